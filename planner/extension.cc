@@ -13,22 +13,6 @@ bool EdgeHolds(const Configuration& from, const Configuration& to,
   return holds;
 }
 
-std::optional<Configuration> IntoSpace(const Configuration& q, const ExtensionContext& context) {
-  if (context.options.space == numeric::Space::kFree) {
-    const auto membership = numeric::TestConfiguration(context.world, q, numeric::Space::kFree,
-                                                       &context.workspace->guide);
-    if (membership.verdict != Verdict::kHolds) return std::nullopt;
-    return q;
-  }
-  const ProjectionResult projected =
-      Project(context.world, q, context.options.projection, context.workspace);
-  ++context.counters->projections;
-  context.counters->newton_steps += projected.iterations;
-  ++context.counters->projection_stops[static_cast<std::size_t>(projected.stop)];
-  if (projected.stop != ProjectionStop::kSolved) return std::nullopt;
-  return projected.q;
-}
-
 // Interpolation is not defined between orientations half a turn apart; no edge joins them either.
 std::optional<Configuration> Steer(const Configuration& from, const Configuration& target,
                                    double step) {
@@ -53,12 +37,29 @@ void PlannerCounters::Add(const PlannerCounters& other) {
   edges_accepted += other.edges_accepted;
 }
 
+std::optional<Configuration> MoveIntoSpace(const Configuration& q,
+                                           const ExtensionContext& context) {
+  if (context.options.space == numeric::Space::kFree) {
+    const auto membership = numeric::TestConfiguration(context.world, q, numeric::Space::kFree,
+                                                       &context.workspace->guide);
+    if (membership.verdict != Verdict::kHolds) return std::nullopt;
+    return q;
+  }
+  const ProjectionResult projected =
+      Project(context.world, q, context.options.projection, context.workspace);
+  ++context.counters->projections;
+  context.counters->newton_steps += projected.iterations;
+  ++context.counters->projection_stops[static_cast<std::size_t>(projected.stop)];
+  if (projected.stop != ProjectionStop::kSolved) return std::nullopt;
+  return projected.q;
+}
+
 std::optional<Configuration> Extend(const Configuration& from, const Configuration& target,
                                     const ExtensionContext& context) {
   ++context.counters->extensions;
   const auto stepped = Steer(from, target, context.options.step);
   if (!stepped) return std::nullopt;
-  auto q = IntoSpace(*stepped, context);
+  auto q = MoveIntoSpace(*stepped, context);
   if (!q) return std::nullopt;
   const double moved = Distance(from, *q);
   if (moved > context.options.max_stretch * context.options.step) return std::nullopt;

@@ -40,6 +40,9 @@ struct ExtensionContext {
   PlannerCounters* counters;
 };
 
+/** q itself where the space needs no projection, else its projection; nothing where it fails. */
+std::optional<Configuration> MoveIntoSpace(const Configuration& q, const ExtensionContext& context);
+
 /** Steps from `from` towards `target`, projects the step into the space and asks the oracle about
  the edge; nothing where any of it fails. (In Space::kFree the step is tested instead of projected.)
  */
