@@ -21,7 +21,7 @@ namespace {
 constexpr double kRankTolerance = 1e-9;    // a pivot below this counts as dependent
 constexpr double kPivotTolerance = 1e-11;  // smallest divisor in the ratio test
 constexpr double kInSpanTolerance = 1e-13;
-constexpr double kRoom[] = {0x1p-8, 0x1p-17, 0x1p-26, 0x1p-36, 0x1p-45};  // s
+constexpr double kRoom[] = {0x1p-8, 0x1p-17, 0x1p-26, 0x1p-33, 0x1p-37, 0x1p-40, 0x1p-42};  // s
 constexpr int kMaxPivots = 120;
 constexpr double kBaseWeight[6] = {1, 0.8, 1.2, 0.9, 1.1, 0.7};
 
@@ -198,7 +198,7 @@ void Simplex::ComputeMultipliers(double s) {
   for (int k = 0; k < 6; ++k) {
     cost[k] = s;
     if (kind_[k] == Kind::kArtificial) cost[k] = in_span_ ? 0 : -1;
-    if (kind_[k] == Kind::kDirection) cost[k] = in_span_ ? 1 : s;
+    if (kind_[k] == Kind::kDirection) cost[k] = in_span_ ? 1 : 8 * s;
   }
   y_ = -(inverse_.transpose() * cost);
 }
