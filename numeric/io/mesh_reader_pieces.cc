@@ -137,6 +137,7 @@ std::vector<PieceShape> SplitPieces(const TriangleMesh& mesh, MeshUse use,
       continue;
     }
     if (use == MeshUse::kSolid) {
+      if (proper.empty()) continue;
       throw Error(Error::Code::kBadInput,
                   place + ": a part of " + std::to_string(component.size()) +
                       " triangles is not closed or not consistently oriented (" +
@@ -144,6 +145,10 @@ std::vector<PieceShape> SplitPieces(const TriangleMesh& mesh, MeshUse use,
                       " faulty edges), so it has no inside; use it as surface or hull");
     }
     pieces.push_back(Extract<Surface>(mesh, component));
+  }
+  if (pieces.empty()) {
+    throw Error(Error::Code::kBadInput,
+                place + ": all triangles are degenerate, so there is no solid; use it as surface");
   }
   return pieces;
 }
