@@ -21,7 +21,8 @@ struct RobotFiles {
   PackageMap packages;
 };
 
-/** A posture by joint name, as read from an SRDF group_state; values as stored, limits unchecked. */
+/** A posture by joint name, as read from an SRDF group_state; values as stored, limits unchecked.
+ */
 struct NamedPosture {
   std::string name;
   std::map<std::string, double> joints;
