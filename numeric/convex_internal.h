@@ -84,6 +84,11 @@ inline double BoxExtent(const Convex& s, const Eigen::Vector3d& n) {
 /** A point of the core, relative to c, that is farthest along n. */
 Eigen::Vector3d CoreSupport(const Convex& s, const Eigen::Vector3d& n);
 
+/** A point of the set; the middle of the box around a hull need not be one. */
+inline Eigen::Vector3d InnerPoint(const Convex& s) {
+  return s.kind == CoreKind::kPoints ? Eigen::Vector3d(s.c + s.R * s.points[0]) : s.c;
+}
+
 /** Where a point stands to a set. */
 struct PointProjection {
   Eigen::Vector3d y = Eigen::Vector3d::Zero();  ///< closest point of the set's boundary
