@@ -17,14 +17,15 @@ struct StabilityQuery {
   double com_error = 0;  ///< bound on the error of com_W (m)
   double mass = 0;       ///< kg
   Eigen::Vector3d gravity_W{0, 0, -9.81};
-  int generators = 4;    ///< sides of the inscribed pyramids that are tried
+  int generators = 4;  ///< sides of the inscribed pyramids that are tried
 };
 
-/** Balance found in floats: weights on 6 generators, and the margin by which the proof went through. */
+/** Balance found in floats: weights on 6 generators, and the margin by which the proof went
+ * through. */
 struct ForceWitness {
-  std::vector<int> contact;                ///< per generator: index into the query's contacts
-  std::vector<Eigen::Vector3d> u_W;        ///< generator direction (not unit), admissible
-  std::vector<double> weight;              ///< > 0
+  std::vector<int> contact;          ///< per generator: index into the query's contacts
+  std::vector<Eigen::Vector3d> u_W;  ///< generator direction (not unit), admissible
+  std::vector<double> weight;        ///< > 0
 };
 
 /** A wrench direction y with y.(u, p x u) <= 0 for every admissible u of every contact that may be
@@ -35,8 +36,8 @@ struct SeparatingWrench {
 
 struct StabilityAnswer {
   Verdict verdict = Verdict::kUndecided;
-  ForceWitness forces;        ///< filled where kHolds
-  SeparatingWrench separator; ///< filled where kFails
+  ForceWitness forces;         ///< filled where kHolds
+  SeparatingWrench separator;  ///< filled where kFails
 };
 
 /** Per-thread scratch; keeps the last bases and separators as first guesses. */
@@ -48,8 +49,8 @@ struct StabilityWorkspace {
 
 /** Decides in doubles with a proven bound, or declines (kUndecided).
  kHolds: the wrench is interior to the true cone for every configuration within the stated errors,
- using certain contacts only. kFails: it is outside the true revolution cones of all contacts that may
- be active. Proofs above the functions in stability.cc. */
+ using certain contacts only. kFails: it is outside the true revolution cones of all contacts that
+ may be active. Proofs above the functions in stability.cc. */
 StabilityAnswer TryStability(const StabilityQuery& query, StabilityWorkspace* workspace);
 
 }  // namespace cguide::numeric
