@@ -70,8 +70,7 @@ int OpenBeside(const fs::path& file, fs::path* temporary) {
   for (int attempt = 0; attempt < 1000; ++attempt) {
     *temporary = file.parent_path() / ("." + file.filename().string() + "." +
                                        std::to_string(::getpid()) + "." + std::to_string(attempt));
-    const int number =
-        ::open(temporary->c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const int number = ::open(temporary->c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (number >= 0 || errno != EEXIST) return number;
   }
   return -1;

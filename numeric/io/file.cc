@@ -80,7 +80,8 @@ std::string ReadFileBytes(const fs::path& file, std::size_t limit) {
          stream.gcount() > 0) {
     bytes.append(block.data(), static_cast<std::size_t>(stream.gcount()));
     if (bytes.size() > limit) {
-      RefuseFile(file, "is larger than " + std::to_string(limit >> 20) + " MiB; is it the right file?");
+      RefuseFile(file,
+                 "is larger than " + std::to_string(limit >> 20) + " MiB; is it the right file?");
     }
   }
   if (stream.bad()) RefuseFile(file, "reading failed midway");
@@ -89,15 +90,14 @@ std::string ReadFileBytes(const fs::path& file, std::size_t limit) {
 
 std::string ReadTextFile(const fs::path& file, std::size_t limit) {
   std::string bytes = ReadFileBytes(file, limit);
-  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
   std::string_view rest = bytes;
   int line = 1;
   while (!rest.empty()) {
     const std::size_t length = IsControl(rest.front()) ? 0 : SequenceLength(rest);
     if (length == 0) {
       throw Error(Error::Code::kBadInput,
-                  file.string() + ":" + std::to_string(line) +
-                      ": byte " + std::to_string(bytes.size() - rest.size()) +
+                  file.string() + ":" + std::to_string(line) + ": byte " +
+                      std::to_string(bytes.size() - rest.size()) +
                       " is not UTF-8 text; is this a text file, and not damaged?");
     }
     if (rest.front() == '\n') ++line;
@@ -116,12 +116,13 @@ bool IsUtf8(std::string_view bytes) {
 }
 
 std::string NearestName(std::string_view word, const std::vector<std::string>& candidates) {
-  // Words beyond any sensible name are cut, so that a damaged file cannot make this quadratic cost hurt.
+  // Words beyond any sensible name are cut, so that a damaged file cannot make this quadratic cost
+  // hurt.
   word = word.substr(0, 64);
-  const auto nearest = std::min_element(
-      candidates.begin(), candidates.end(), [&](const std::string& a, const std::string& b) {
-        return EditDistance(word, a) < EditDistance(word, b);
-      });
+  const auto nearest = std::min_element(candidates.begin(), candidates.end(),
+                                        [&](const std::string& a, const std::string& b) {
+                                          return EditDistance(word, a) < EditDistance(word, b);
+                                        });
   return nearest == candidates.end() ? std::string() : *nearest;
 }
 

@@ -17,20 +17,21 @@ struct YamlNode {
   Kind kind = Kind::kNull;
   int line = 0;
   int column = 0;
-  std::string text;     ///< of a scalar
-  bool plain = true;    ///< a scalar without quotes and without tag
+  std::string text;               ///< of a scalar
+  bool plain = true;              ///< a scalar without quotes and without tag
   std::vector<std::string> keys;  ///< of a map, in the file's order, without repeats
   std::vector<YamlNode> items;    ///< of a list, or the values of a map
 };
 
 /** Parses one document. Repeated keys, keys that are no scalars, more than one document, nesting
- deeper than 32, more than 200 000 nodes after expanding aliases and aliases to an enclosing node are
- refused. `place` is the file's name for messages. @throws Error (kBadInput) with place:line:column. */
+ deeper than 32, more than 200 000 nodes after expanding aliases and aliases to an enclosing node
+ are refused. `place` is the file's name for messages. @throws Error (kBadInput) with
+ place:line:column. */
 YamlNode ParseYaml(const std::string& text, const std::string& place);
 
 /** A node together with the file and the key path that lead to it: the cursor all of the problem
- reader works with. Every refusal throws Error (kBadInput) "file:line:column: key.path: why". Cheap to
- copy; borrows the tree. */
+ reader works with. Every refusal throws Error (kBadInput) "file:line:column: key.path: why". Cheap
+ to copy; borrows the tree. */
 class YamlView {
  public:
   YamlView(const YamlNode& node, std::filesystem::path file);

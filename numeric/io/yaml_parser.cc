@@ -23,8 +23,9 @@ long CountNodes(const YamlNode& node) {
   return count;
 }
 
-// Builds the tree from the parser's events rather than from YAML::Node, which keeps the first of two
-// equal keys silently, shares alias targets (a small file can then unfold without bound) and recurses.
+// Builds the tree from the parser's events rather than from YAML::Node, which keeps the first of
+// two equal keys silently, shares alias targets (a small file can then unfold without bound) and
+// recurses.
 class TreeBuilder : public YAML::EventHandler {
  public:
   explicit TreeBuilder(std::string place) : place_(std::move(place)) {}
@@ -74,8 +75,8 @@ class TreeBuilder : public YAML::EventHandler {
   };
 
   [[noreturn]] void Refuse(int line, int column, const std::string& why) const {
-    throw Error(Error::Code::kBadInput, place_ + ":" + std::to_string(line) + ":" +
-                                            std::to_string(column) + ": " + why);
+    throw Error(Error::Code::kBadInput,
+                place_ + ":" + std::to_string(line) + ":" + std::to_string(column) + ": " + why);
   }
   [[noreturn]] void Refuse(const YAML::Mark& mark, const std::string& why) const {
     Refuse(mark.line + 1, mark.column + 1, why);
@@ -165,10 +166,9 @@ YamlNode ParseYaml(const std::string& text, const std::string& place) {
     }
     return builder.TakeRoot();
   } catch (const YAML::Exception& e) {
-    const std::string where =
-        e.mark.is_null() ? ""
-                         : ":" + std::to_string(e.mark.line + 1) + ":" +
-                               std::to_string(e.mark.column + 1);
+    const std::string where = e.mark.is_null() ? ""
+                                               : ":" + std::to_string(e.mark.line + 1) + ":" +
+                                                     std::to_string(e.mark.column + 1);
     throw Error(Error::Code::kBadInput, place + where + ": this is not YAML (" + e.msg +
                                             "); check brackets, quotes and indentation");
   }

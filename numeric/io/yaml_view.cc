@@ -35,8 +35,8 @@ YamlView::YamlView(const YamlNode& node, const YamlView& parent, std::string pat
     : node_(&node), file_(parent.file_), path_(std::move(path)) {}
 
 std::string YamlView::Place() const {
-  return file_->string() + ":" + std::to_string(node_->line) + ":" +
-         std::to_string(node_->column) + (path_.empty() ? "" : ": " + path_);
+  return file_->string() + ":" + std::to_string(node_->line) + ":" + std::to_string(node_->column) +
+         (path_.empty() ? "" : ": " + path_);
 }
 
 void YamlView::Fail(const std::string& why) const {
@@ -105,7 +105,8 @@ double YamlView::Number(double low, double high) const {
   if (!node_->plain) Fail("a number is expected here, not text; remove quotes and tags");
   std::string why;
   const double value = ParseDouble(node_->text, &why);
-  if (!why.empty()) Fail(Quote(node_->text) + " " + why + "; write a decimal such as -0.25 or 1e-3");
+  if (!why.empty())
+    Fail(Quote(node_->text) + " " + why + "; write a decimal such as -0.25 or 1e-3");
   if (value < low || value > high) {
     Fail(node_->text + " is out of range; it must lie in [" + ShortestDouble(low) + ", " +
          ShortestDouble(high) + "]");
