@@ -9,6 +9,7 @@
 
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/io/mesh_reader_guard_internal.h"
+#include "cguide/numeric/io/urdf_xml_internal.h"
 
 namespace cguide::numeric::io {
 namespace {
@@ -62,6 +63,13 @@ void AppendLine(Word begin, Word end, std::string* text) {
   *text += '\n';
 }
 
+void CheckCoordinates(Word begin, Word end, const std::string& place, std::size_t line) {
+  if (end - begin < 3) RefuseLine(place, line, "a vertex without three coordinates");
+  ReadAt(place + ":" + std::to_string(line), [&] {
+    for (Word word = begin; word != begin + 3; ++word) ParseNumber(*word);
+  });
+}
+
 // -1 where the word is no integer.
 long ReadInteger(std::string_view word) {
   long value = 0;
@@ -85,7 +93,7 @@ void GuardTextStl(const std::string& bytes, const std::string& place) {
     if (words[0] == "endfacet") ++facet_ends;
     if (words[0] != "vertex") continue;
     ++vertices;
-    if (words.size() != 4) RefuseLine(place, lines.number(), "a vertex without three coordinates");
+    CheckCoordinates(words.begin() + 1, words.end(), place, lines.number());
   }
   if (solids == 0 || solids != ends || facets != facet_ends || vertices != 3 * facets) {
     Refuse(place, "text STL with " + std::to_string(facets) + " facets, " +
@@ -139,9 +147,7 @@ std::string PlainOff(const std::string& bytes, const std::string& place) {
   std::string plain = "OFF\n" + std::to_string(vertices) + " " + std::to_string(faces) + " 0\n";
   for (long i = 0; i < vertices; ++i) {
     words = NextWords(&lines, place);
-    if (words.size() < 3) {
-      RefuseLine(place, lines.number(), "a vertex with fewer than three coordinates");
-    }
+    CheckCoordinates(words.begin(), words.end(), place, lines.number());
     AppendLine(words.begin(), words.begin() + 3, &plain);
   }
   for (long i = 0; i < faces; ++i) {
@@ -177,7 +183,7 @@ std::string PlainObj(const std::string& bytes, const std::string& place) {
     if (words.back() == "\\")
       RefuseLine(place, lines.number(), "continued lines are not supported");
     if (words[0] == "v") {
-      if (words.size() < 4) RefuseLine(place, lines.number(), "a vertex without three coordinates");
+      CheckCoordinates(words.begin() + 1, words.end(), place, lines.number());
       ++vertices;
       AppendLine(words.begin(), words.begin() + 4, &plain);
     }

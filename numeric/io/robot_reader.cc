@@ -18,7 +18,7 @@ struct ShapeReader {
   const std::string& place;
   ConvexShape operator()(const UrdfMesh& mesh) const {
     const auto file = ResolveUri(mesh.uri, files.urdf, files.packages, place);
-    return MakeHull(ReadMesh(file, mesh.scale), file.string());
+    return ReadAt(place, [&] { return MakeHull(ReadMesh(file, mesh.scale), file.string()); });
   }
   template <typename Shape>
   ConvexShape operator()(const Shape& shape) const {

@@ -55,8 +55,11 @@ std::vector<Object> ReadKlamptWorld(const XmlFile& xml, const Pose& X_WS, double
     const int use = ++uses[stem];
     Object object{use == 1 ? stem : stem + "_" + std::to_string(use), friction, {}};
     const Pose X_WP = Compose(X_WS, ReadPlacement(xml, *item));
-    const TriangleMesh mesh = ReadMesh(file, ReadScale(xml, *item));
-    for (PieceShape& shape : MakePieces(mesh, MeshUse::kAuto, file.string())) {
+    const Eigen::Vector3d scale = ReadScale(xml, *item);
+    std::vector<PieceShape> shapes = ReadAt(xml.Place(*item), [&] {
+      return MakePieces(ReadMesh(file, scale), MeshUse::kAuto, file.string());
+    });
+    for (PieceShape& shape : shapes) {
       object.pieces.push_back({X_WP, std::move(shape)});
     }
     objects.push_back(std::move(object));

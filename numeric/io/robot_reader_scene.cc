@@ -14,7 +14,9 @@ struct PieceReader {
   const std::string& place;
   std::vector<PieceShape> operator()(const UrdfMesh& mesh) const {
     const auto file = ResolveUri(mesh.uri, urdf, packages, place);
-    return MakePieces(ReadMesh(file, mesh.scale), MeshUse::kAuto, file.string());
+    return ReadAt(place, [&] {
+      return MakePieces(ReadMesh(file, mesh.scale), MeshUse::kAuto, file.string());
+    });
   }
   template <typename Shape>
   std::vector<PieceShape> operator()(const Shape& shape) const {
