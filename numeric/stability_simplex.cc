@@ -21,7 +21,7 @@ namespace {
 constexpr double kRankTolerance = 1e-9;    // a pivot below this counts as dependent
 constexpr double kPivotTolerance = 1e-11;  // smallest divisor in the ratio test
 constexpr double kInSpanTolerance = 1e-13;
-constexpr double kRoom[] = {0x1p-8, 0x1p-17, 0x1p-26, 0x1p-36, 0x1p-45};  // s
+constexpr double kRoom[] = {0x1p-8, 0x1p-17, 0x1p-26, 0x1p-33, 0x1p-37, 0x1p-40, 0x1p-42};  // s
 constexpr int kMaxPivots = 120;
 constexpr double kBaseWeight[6] = {1, 0.8, 1.2, 0.9, 1.1, 0.7};
 
@@ -67,30 +67,41 @@ class Simplex {
   int pivots_ = 0;
 };
 
-// Tangential part of g without the cancellation of |g|^2 - (g.n)^2.
-struct Split {
-  double along;
-  double across;
+// Prices in blocks, so that the arithmetic is a plain loop that compilers vectorise.
+constexpr int kBlock = 32;
+struct Block {
+  double along[kBlock];   // g.n
+  double across[kBlock];  // mu |g_t|, without the cancellation of |g|^2 - (g.n)^2
 };
 
-inline Split SplitForce(const ScaledContacts& c, int i, const double* y) {
-  const double gx = y[0] + (y[4] * c.rz[i] - y[5] * c.ry[i]);
-  const double gy = y[1] + (y[5] * c.rx[i] - y[3] * c.rz[i]);
-  const double gz = y[2] + (y[3] * c.ry[i] - y[4] * c.rx[i]);
-  const double along = gx * c.nx[i] + gy * c.ny[i] + gz * c.nz[i];
-  const double tx = gx - along * c.nx[i];
-  const double ty = gy - along * c.ny[i];
-  const double tz = gz - along * c.nz[i];
-  return {along, std::sqrt(tx * tx + ty * ty + tz * tz)};
+void PriceBlock(const ScaledContacts& c, int first, int size, const Vector6d& y, Block* block) {
+  const double fx = y[0], fy = y[1], fz = y[2], mx = y[3], my = y[4], mz = y[5];
+  const double *rx = &c.rx[first], *ry = &c.ry[first], *rz = &c.rz[first];
+  const double *nx = &c.nx[first], *ny = &c.ny[first], *nz = &c.nz[first], *mu = &c.mu[first];
+  double* __restrict along = block->along;
+  double* __restrict across = block->across;
+  for (int i = 0; i < size; ++i) {
+    const double gx = fx + (my * rz[i] - mz * ry[i]);
+    const double gy = fy + (mz * rx[i] - mx * rz[i]);
+    const double gz = fz + (mx * ry[i] - my * rx[i]);
+    const double gn = gx * nx[i] + gy * ny[i] + gz * nz[i];
+    const double tx = gx - gn * nx[i], ty = gy - gn * ny[i], tz = gz - gn * nz[i];
+    along[i] = gn;
+    across[i] = mu[i] * std::sqrt(tx * tx + ty * ty + tz * tz);
+  }
 }
 
 Simplex::Price Simplex::DearestContact(const Vector6d& y) const {
   Price best;
   best.value = -INFINITY;
-  for (int i = 0; i < count_; ++i) {
-    const Split g = SplitForce(c_, i, y.data());
-    const double value = g.along + c_.mu[i] * g.across;
-    if (value > best.value) best = {i, value};
+  Block block;
+  for (int first = 0; first < count_; first += kBlock) {
+    const int size = std::min(kBlock, count_ - first);
+    PriceBlock(c_, first, size, y, &block);
+    for (int i = 0; i < size; ++i) {
+      const double value = block.along[i] + block.across[i];
+      if (value > best.value) best = {first + i, value};
+    }
   }
   return best;
 }
@@ -98,10 +109,14 @@ Simplex::Price Simplex::DearestContact(const Vector6d& y) const {
 // The contact whose cone reaches farthest along rho or -rho; the sign of `value` says which.
 Simplex::Price Simplex::LargestSupport(const Vector6d& rho) const {
   Price best;
-  for (int i = 0; i < count_; ++i) {
-    const Split g = SplitForce(c_, i, rho.data());
-    const double value = g.along + std::copysign(c_.mu[i] * g.across, g.along);
-    if (std::abs(value) > std::abs(best.value)) best = {i, value};
+  Block block;
+  for (int first = 0; first < count_; first += kBlock) {
+    const int size = std::min(kBlock, count_ - first);
+    PriceBlock(c_, first, size, rho, &block);
+    for (int i = 0; i < size; ++i) {
+      const double value = block.along[i] + std::copysign(block.across[i], block.along[i]);
+      if (std::abs(value) > std::abs(best.value)) best = {first + i, value};
+    }
   }
   return best;
 }
@@ -198,7 +213,7 @@ void Simplex::ComputeMultipliers(double s) {
   for (int k = 0; k < 6; ++k) {
     cost[k] = s;
     if (kind_[k] == Kind::kArtificial) cost[k] = in_span_ ? 0 : -1;
-    if (kind_[k] == Kind::kDirection) cost[k] = in_span_ ? 1 : s;
+    if (kind_[k] == Kind::kDirection) cost[k] = in_span_ ? 1 : 8 * s;
   }
   y_ = -(inverse_.transpose() * cost);
 }

@@ -18,6 +18,7 @@ inline Contact PointContact(const Eigen::Vector3d& p, const Eigen::Vector3d& n, 
   contact.n_W = n;
   contact.distance = 0.02;
   contact.y_W = p - 0.02 * n;
+  contact.normal_error = 0x1p-51;  // n is normalised in doubles
   contact.friction = mu;
   return contact;
 }
@@ -50,8 +51,8 @@ inline void AddPatch(const Eigen::Vector3d& p, const Eigen::Vector3d& n, double 
   }
 }
 
-/** `patches` supports of four points: feet on the floor (some on slopes), then hands, knees and a seat
- at heights and normals of their kind. The CoM is drawn within 0.35 m of the centroid. */
+/** `patches` supports of four points: feet on the floor (some on slopes), then hands, knees and a
+ seat at heights and normals of their kind. The CoM is drawn within 0.35 m of the centroid. */
 inline Stance RandomStance(int patches, Rng& rng) {
   Stance stance;
   for (int k = 0; k < patches; ++k) {
