@@ -76,7 +76,7 @@ TEST_CASE("clearances of random convex pairs enclose the exact distance") {
     c.a = RandomShape(rng, static_cast<int>(rng() % 5));
     c.b = RandomShape(rng, static_cast<int>(rng() % 5));
     c.X_LS = {RandomPoint(rng, 0.2), RandomQuaternion(rng)};
-    c.X_WB = {RandomPoint(rng, 1.2), RandomQuaternion(rng)};
+    c.X_WB = {RandomPoint(rng, 0.9), RandomQuaternion(rng)};
     c.X_WP = {RandomPoint(rng, 0.2), RandomQuaternion(rng)};
     CAPTURE(i, c.a.index(), c.b.index());
     const Answers a = Ask(c);
