@@ -75,7 +75,8 @@ DirectedClearance Overlapping(const Convex& a, const Convex& b, const GjkResult&
   result.b_W = b.c + gjk.b;
   EstimateDepth(a, b, gjk, &result);
   const bool balls_meet = !gjk.overlap && gjk.v.norm() + error < a.radius + b.radius;
-  if (balls_meet || ProveTetrahedron(gjk, error) || ProveCommonPoint(a, b, 0)) {
+  if (balls_meet || ProveTetrahedron(gjk, error) || ProveCommonPoint(a, b, 0) ||
+      ProveOctahedron(a, b, error)) {
     SetOverlap(&result);
     return result;
   }

@@ -63,7 +63,8 @@ Verdict DecideByDistance(const Convex& a, const Convex& b, double skin, const Ve
     ++counts->boxes;
     return Verdict::kHolds;
   }
-  if (ProveTetrahedron(gjk, error + skin) || ProveCommonPoint(a, b, skin)) {
+  if (ProveTetrahedron(gjk, error + skin) || ProveCommonPoint(a, b, skin) ||
+      ProveOctahedron(a, b, error + skin)) {
     ++counts->meets;
     return Verdict::kFails;
   }
@@ -156,6 +157,34 @@ bool ProveTetrahedron(const GjkResult& gjk, double needed) {
     if (!(std::abs(origin) > needed * length + rounding) || !(std::abs(apex) > rounding)) return false;
   }
   return true;
+}
+
+bool ProveOctahedron(const Convex& a, const Convex& b, double needed) {
+  // Rotations without symmetry, so that corners of aligned boxes do not tie.
+  static constexpr double kFrames[4][4] = {
+      {0.93, 0.21, -0.17, 0.24}, {0.61, -0.42, 0.57, 0.36}, {0.34, 0.71, 0.28, -0.55},
+      {0.48, 0.13, 0.79, 0.36}};
+  for (const auto& q : kFrames) {
+    const Matrix3d frame = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+    Vector3d w[3][2];
+    for (int i = 0; i < 3; ++i) {
+      for (const int sign : {0, 1}) {
+        const Vector3d n = (sign == 0 ? 1.0 : -1.0) * frame.col(i);
+        w[i][sign] = a.c - b.c + CoreSupport(a, n) - CoreSupport(b, -n) + (a.radius + b.radius) * n;
+      }
+    }
+    bool inside = true;
+    for (int face = 0; inside && face < 8; ++face) {
+      const bool even = ((face & 1) + ((face >> 1) & 1) + (face >> 2)) % 2 == 0;
+      const Vector3d &p = w[0][face & 1], &s = w[1][(face >> 1) & 1], &t = w[2][face >> 2];
+      const Vector3d &u = even ? s : t, &v = even ? t : s;
+      const Vector3d n = (u - p).cross(v - p);
+      const double rounding = 32 * kUnit * (u - p).norm() * (v - p).norm() * p.norm();
+      inside = n.dot(p) > needed * n.norm() + rounding;
+    }
+    if (inside) return true;
+  }
+  return false;
 }
 
 Verdict DecideConvex(const Convex& a, const Convex& b, double skin, SeparationHint* hint,

@@ -94,4 +94,11 @@ struct GjkResult;
  `depth` of the origin: the ball stays inside, and inside A - B by convexity. */
 bool ProveTetrahedron(const GjkResult& gjk, double needed);
 
+/** The same with octahedra of support points along a few fixed frames: the corners are differences of
+ support points, and if the origin is on the inner side of all eight outward faces, each by more than
+ `needed`, their solid angles seen from it are all positive. The closed surface then winds around the
+ origin, which a convex set that holds the surface must hold too; moving the corners by less than the
+ faces' distance does not change the winding number. */
+bool ProveOctahedron(const Convex& a, const Convex& b, double needed);
+
 }  // namespace cguide::numeric
