@@ -197,7 +197,7 @@ Path DemoPath(const Robot& robot) {
   // pitch, hip, knee, waist, shoulder, elbow (rad), one line per key posture.
   const std::vector<std::array<double, 6>> keys = {
       {0.0, -1.52, 1.52, 0.05, -0.35, -0.9}, {0.35, -1.75, 1.62, 0.3, -0.5, -0.8},
-      {0.42, -1.8, 1.6, 0.35, -0.9, -0.5},  {0.42, -1.35, 1.15, 0.3, -0.9, -0.5},
+      {0.42, -1.8, 1.6, 0.35, -0.9, -0.5},   {0.42, -1.35, 1.15, 0.3, -0.9, -0.5},
       {0.2, -0.65, 0.75, 0.1, -0.3, -0.6},   {0.0, -0.05, 0.1, 0.0, 0.05, -0.25}};
   Path path;
   path.joint_names = ColumnNames(robot);
