@@ -1,5 +1,3 @@
-#include "cguide/numeric/io/mesh_reader_guard_internal.h"
-
 #include <tinyxml2.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/numeric/io/mesh_reader_guard_internal.h"
 
 namespace cguide::numeric::io {
 namespace {
@@ -126,7 +125,8 @@ std::vector<std::string_view> NextWords(Lines* lines, const std::string& place) 
 std::string PlainOff(const std::string& bytes, const std::string& place) {
   Lines lines(bytes);
   auto words = NextWords(&lines, place);
-  if (words[0] != "OFF") RefuseLine(place, lines.number(), "the first word is not OFF; use plain OFF");
+  if (words[0] != "OFF")
+    RefuseLine(place, lines.number(), "the first word is not OFF; use plain OFF");
   words.erase(words.begin());
   if (words.empty()) words = NextWords(&lines, place);
   const long vertices = ReadInteger(words[0]);
@@ -153,9 +153,9 @@ std::string PlainOff(const std::string& bytes, const std::string& place) {
     for (long c = 1; c <= corners; ++c) {
       const long index = ReadInteger(words[c]);
       if (index < 0 || index >= vertices) {
-        RefuseLine(place, lines.number(), "a face names vertex " + std::string(words[c]) +
-                                              ", but the vertices are 0 to " +
-                                              std::to_string(vertices - 1));
+        RefuseLine(place, lines.number(),
+                   "a face names vertex " + std::string(words[c]) + ", but the vertices are 0 to " +
+                       std::to_string(vertices - 1));
       }
     }
     AppendLine(words.begin(), words.begin() + corners + 1, &plain);
@@ -174,7 +174,8 @@ std::string PlainObj(const std::string& bytes, const std::string& place) {
   while (lines.Next()) {
     const auto words = lines.Words();
     if (words.empty()) continue;
-    if (words.back() == "\\") RefuseLine(place, lines.number(), "continued lines are not supported");
+    if (words.back() == "\\")
+      RefuseLine(place, lines.number(), "continued lines are not supported");
     if (words[0] == "v") {
       if (words.size() < 4) RefuseLine(place, lines.number(), "a vertex without three coordinates");
       ++vertices;
@@ -190,9 +191,9 @@ std::string PlainObj(const std::string& bytes, const std::string& place) {
       const long number = ReadInteger(backwards ? corner.substr(1) : corner);
       const long index = backwards ? vertices + 1 - number : number;
       if (number < 1 || index < 1 || index > vertices) {
-        RefuseLine(place, lines.number(), "a face names vertex " + std::string(corner) +
-                                              ", but the vertices so far are 1 to " +
-                                              std::to_string(vertices));
+        RefuseLine(place, lines.number(),
+                   "a face names vertex " + std::string(corner) +
+                       ", but the vertices so far are 1 to " + std::to_string(vertices));
       }
       plain += " " + std::to_string(index);
     }

@@ -34,7 +34,8 @@ int FindRoot(const UrdfDocument& document, const std::vector<int>& parent) {
     root = static_cast<int>(i);
   }
   if (root < 0) {
-    Refuse(document.file + ": no link is without parent, so the joints make a cycle; remove a joint");
+    Refuse(document.file +
+           ": no link is without parent, so the joints make a cycle; remove a joint");
   }
   return root;
 }

@@ -64,8 +64,7 @@ XmlFile::XmlFile(const std::filesystem::path& file) : path_(file) {
   }
   if (document_.Parse(bytes.data(), bytes.size()) != tinyxml2::XML_SUCCESS) {
     throw Error(Error::Code::kBadInput,
-                name + ":" + std::to_string(document_.ErrorLineNum()) +
-                    ": malformed XML (" +
+                name + ":" + std::to_string(document_.ErrorLineNum()) + ": malformed XML (" +
                     tinyxml2::XMLDocument::ErrorIDToName(document_.ErrorID()) +
                     "); the file may be truncated or no XML at all");
   }
@@ -101,7 +100,8 @@ std::string XmlFile::Text(const tinyxml2::XMLElement& element, const char* attri
 
 std::vector<double> XmlFile::Numbers(const tinyxml2::XMLElement& element, const char* attribute,
                                      std::size_t count) const {
-  const std::string what = std::string("attribute \"") + attribute + "\" of <" + element.Name() + ">";
+  const std::string what =
+      std::string("attribute \"") + attribute + "\" of <" + element.Name() + ">";
   std::vector<double> numbers;
   try {
     numbers = ParseNumbers(Text(element, attribute));

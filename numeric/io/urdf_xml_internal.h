@@ -9,8 +9,8 @@
 
 namespace cguide::numeric::io {
 
-/** No coordinate, mass, limit or factor of a description may exceed this in magnitude: beyond it lie
- unit mistakes and the inputs on which float code overflows. */
+/** No coordinate, mass, limit or factor of a description may exceed this in magnitude: beyond it
+ lie unit mistakes and the inputs on which float code overflows. */
 inline constexpr double kLargestNumber = 1e6;
 
 /** The bytes of a regular file. @throws Error: kIo where it cannot be read, kBadInput where it is
@@ -20,7 +20,8 @@ std::string ReadBytes(const std::filesystem::path& file, std::uintmax_t limit);
 /** An XML file in memory that knows where its elements stand. */
 class XmlFile {
  public:
-  /** @throws Error (kIo, kBadInput): missing, empty, binary, malformed, more than one root element. */
+  /** @throws Error (kIo, kBadInput): missing, empty, binary, malformed, more than one root element.
+   */
   explicit XmlFile(const std::filesystem::path& file);
 
   const std::filesystem::path& path() const { return path_; }
