@@ -75,10 +75,12 @@ function toggle(name, on) {
 let clock = 0;
 function tick(now) {
   if (!state.playing) return;
-  state.t += state.speed * Math.min(0.1, (now - clock) / 1000) / duration;
+  // A frame's time stamp may lie before the press of the button; a sleeping tab must not leap ahead.
+  state.t += state.speed * Math.min(0.1, Math.max(0, (now - clock) / 1000)) / duration;
   clock = now;
-  if (state.t >= 1) {
-    state.t = 1;
+  const end = frames.t[frames.count - 1];
+  if (state.t >= end) {
+    state.t = end;
     pause();
   }
   state.frame = frames.nearest(state.t);
@@ -88,7 +90,7 @@ function tick(now) {
 
 function play() {
   if (frames.count < 2) return;
-  if (state.t >= 1) state.t = 0;
+  if (state.t >= frames.t[frames.count - 1]) state.t = frames.t[0];
   state.playing = true;
   clock = performance.now();
   drawButton();

@@ -219,7 +219,8 @@ double PathClock::At(int edge, double s) const {
   const auto edges = static_cast<double>(start_.size() - 1);
   if (edges == 0) return 0;
   if (!(length() > 0)) return std::min(1.0, (edge + s) / edges);
-  const std::size_t i = std::min<std::size_t>(edge, start_.size() - 2);
+  const auto i = static_cast<std::size_t>(edge);
+  if (i + 1 >= start_.size()) return 1;  // the last waypoint, as the start of an edge
   return std::min(1.0, (start_[i] + s * (start_[i + 1] - start_[i])) / length());
 }
 
