@@ -4,8 +4,9 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <assimp/Importer.hpp>
+#include <Eigen/LU>
 #include <algorithm>
+#include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -35,7 +36,8 @@ MeshFormat FormatOf(const std::filesystem::path& file) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const auto found = kFormats.find(extension);
   if (found == kFormats.end()) {
-    Refuse(file.string(), "unknown mesh format \"" + extension + "\"; convert it to STL, OBJ, DAE or OFF");
+    Refuse(file.string(),
+           "unknown mesh format \"" + extension + "\"; convert it to STL, OBJ, DAE or OFF");
   }
   return found->second;
 }
@@ -45,8 +47,8 @@ class VertexMerger {
  public:
   explicit VertexMerger(std::vector<Eigen::Vector3d>* vertices) : vertices_(*vertices) {}
   int Index(const Eigen::Vector3d& v) {
-    const auto [found, added] =
-        index_.emplace(Key{v.x() + 0.0, v.y() + 0.0, v.z() + 0.0}, static_cast<int>(vertices_.size()));
+    const auto [found, added] = index_.emplace(Key{v.x() + 0.0, v.y() + 0.0, v.z() + 0.0},
+                                               static_cast<int>(vertices_.size()));
     if (added) vertices_.emplace_back(found->first[0], found->first[1], found->first[2]);
     return found->second;
   }
@@ -74,9 +76,9 @@ class Collector {
     // Products of the importer's floats, formed in doubles; the identity leaves points unchanged.
     Eigen::Matrix4d X = X_parent;
     if (!node.mTransformation.IsIdentity()) {
-      X = X_parent * Eigen::Map<const Eigen::Matrix<float, 4, 4, Eigen::RowMajor>>(
-                         &node.mTransformation.a1)
-                         .cast<double>();
+      X = X_parent *
+          Eigen::Map<const Eigen::Matrix<float, 4, 4, Eigen::RowMajor>>(&node.mTransformation.a1)
+              .cast<double>();
     }
     for (unsigned i = 0; i < node.mNumMeshes; ++i) AddMesh(*scene.mMeshes[node.mMeshes[i]], X);
     for (unsigned i = 0; i < node.mNumChildren; ++i) Add(scene, *node.mChildren[i], X);
@@ -94,7 +96,8 @@ class Collector {
       std::array<int, 3> triangle;
       for (int c = 0; c < 3; ++c) {
         const unsigned index = face.mIndices[flip ? 2 - c : c];
-        if (index >= source.mNumVertices) Refuse(place_, "a triangle names a vertex that does not exist");
+        if (index >= source.mNumVertices)
+          Refuse(place_, "a triangle names a vertex that does not exist");
         triangle[c] = AddVertex(source.mVertices[index], X);
       }
       mesh_.triangles.push_back(triangle);
@@ -141,8 +144,8 @@ TriangleMesh ReadMesh(const std::filesystem::path& file, const Eigen::Vector3d& 
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
-    Refuse(place, std::string("cannot be read as a mesh (") + error.what() +
-                      "); the file may be damaged");
+    Refuse(place,
+           std::string("cannot be read as a mesh (") + error.what() + "); the file may be damaged");
   }
   if (mesh.triangles.empty()) Refuse(place, "the mesh has no triangle");
   return mesh;

@@ -1,5 +1,3 @@
-#include "cguide/numeric/io/mesh_reader_guard_internal.h"
-
 #include <tinyxml2.h>
 
 #include <algorithm>
@@ -10,6 +8,8 @@
 #include <vector>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/numeric/io/mesh_reader_guard_internal.h"
+#include "cguide/numeric/io/urdf_xml_internal.h"
 
 namespace cguide::numeric::io {
 namespace {
@@ -63,6 +63,13 @@ void AppendLine(Word begin, Word end, std::string* text) {
   *text += '\n';
 }
 
+void CheckCoordinates(Word begin, Word end, const std::string& place, std::size_t line) {
+  if (end - begin < 3) RefuseLine(place, line, "a vertex without three coordinates");
+  ReadAt(place + ":" + std::to_string(line), [&] {
+    for (Word word = begin; word != begin + 3; ++word) ParseNumber(*word);
+  });
+}
+
 // -1 where the word is no integer.
 long ReadInteger(std::string_view word) {
   long value = 0;
@@ -86,7 +93,7 @@ void GuardTextStl(const std::string& bytes, const std::string& place) {
     if (words[0] == "endfacet") ++facet_ends;
     if (words[0] != "vertex") continue;
     ++vertices;
-    if (words.size() != 4) RefuseLine(place, lines.number(), "a vertex without three coordinates");
+    CheckCoordinates(words.begin() + 1, words.end(), place, lines.number());
   }
   if (solids == 0 || solids != ends || facets != facet_ends || vertices != 3 * facets) {
     Refuse(place, "text STL with " + std::to_string(facets) + " facets, " +
@@ -126,7 +133,8 @@ std::vector<std::string_view> NextWords(Lines* lines, const std::string& place) 
 std::string PlainOff(const std::string& bytes, const std::string& place) {
   Lines lines(bytes);
   auto words = NextWords(&lines, place);
-  if (words[0] != "OFF") RefuseLine(place, lines.number(), "the first word is not OFF; use plain OFF");
+  if (words[0] != "OFF")
+    RefuseLine(place, lines.number(), "the first word is not OFF; use plain OFF");
   words.erase(words.begin());
   if (words.empty()) words = NextWords(&lines, place);
   const long vertices = ReadInteger(words[0]);
@@ -139,9 +147,7 @@ std::string PlainOff(const std::string& bytes, const std::string& place) {
   std::string plain = "OFF\n" + std::to_string(vertices) + " " + std::to_string(faces) + " 0\n";
   for (long i = 0; i < vertices; ++i) {
     words = NextWords(&lines, place);
-    if (words.size() < 3) {
-      RefuseLine(place, lines.number(), "a vertex with fewer than three coordinates");
-    }
+    CheckCoordinates(words.begin(), words.end(), place, lines.number());
     AppendLine(words.begin(), words.begin() + 3, &plain);
   }
   for (long i = 0; i < faces; ++i) {
@@ -153,9 +159,9 @@ std::string PlainOff(const std::string& bytes, const std::string& place) {
     for (long c = 1; c <= corners; ++c) {
       const long index = ReadInteger(words[c]);
       if (index < 0 || index >= vertices) {
-        RefuseLine(place, lines.number(), "a face names vertex " + std::string(words[c]) +
-                                              ", but the vertices are 0 to " +
-                                              std::to_string(vertices - 1));
+        RefuseLine(place, lines.number(),
+                   "a face names vertex " + std::string(words[c]) + ", but the vertices are 0 to " +
+                       std::to_string(vertices - 1));
       }
     }
     AppendLine(words.begin(), words.begin() + corners + 1, &plain);
@@ -174,9 +180,10 @@ std::string PlainObj(const std::string& bytes, const std::string& place) {
   while (lines.Next()) {
     const auto words = lines.Words();
     if (words.empty()) continue;
-    if (words.back() == "\\") RefuseLine(place, lines.number(), "continued lines are not supported");
+    if (words.back() == "\\")
+      RefuseLine(place, lines.number(), "continued lines are not supported");
     if (words[0] == "v") {
-      if (words.size() < 4) RefuseLine(place, lines.number(), "a vertex without three coordinates");
+      CheckCoordinates(words.begin() + 1, words.end(), place, lines.number());
       ++vertices;
       AppendLine(words.begin(), words.begin() + 4, &plain);
     }
@@ -190,9 +197,9 @@ std::string PlainObj(const std::string& bytes, const std::string& place) {
       const long number = ReadInteger(backwards ? corner.substr(1) : corner);
       const long index = backwards ? vertices + 1 - number : number;
       if (number < 1 || index < 1 || index > vertices) {
-        RefuseLine(place, lines.number(), "a face names vertex " + std::string(corner) +
-                                              ", but the vertices so far are 1 to " +
-                                              std::to_string(vertices));
+        RefuseLine(place, lines.number(),
+                   "a face names vertex " + std::string(corner) +
+                       ", but the vertices so far are 1 to " + std::to_string(vertices));
       }
       plain += " " + std::to_string(index);
     }

@@ -12,9 +12,9 @@ struct GuardedMesh {
   const char* hint;  ///< the importer's name of the format
 };
 
-/** Checks what the importer does not: announced counts against the size of the file, completeness of
- text STL, index ranges of OBJ and OFF, well-formedness of DAE. Takes a DAE's unit away and what OBJ
- says beside vertices and faces.
+/** Checks what the importer does not: announced counts against the size of the file, completeness
+ of text STL, index ranges of OBJ and OFF, well-formedness of DAE. Takes a DAE's unit away and what
+ OBJ says beside vertices and faces.
  @throws Error (kBadInput) beginning with `place`. */
 GuardedMesh GuardMesh(std::string bytes, MeshFormat format, const std::string& place);
 

@@ -18,7 +18,7 @@ struct ShapeReader {
   const std::string& place;
   ConvexShape operator()(const UrdfMesh& mesh) const {
     const auto file = ResolveUri(mesh.uri, files.urdf, files.packages, place);
-    return MakeHull(ReadMesh(file, mesh.scale), file.string());
+    return ReadAt(place, [&] { return MakeHull(ReadMesh(file, mesh.scale), file.string()); });
   }
   template <typename Shape>
   ConvexShape operator()(const Shape& shape) const {
@@ -57,7 +57,8 @@ Mimic ResolveMimic(const UrdfDocument& document, const UrdfJoint& joint) {
       result.joint = static_cast<int>(i);
     }
     if (master == nullptr) {
-      Refuse(subject + " mimics joint \"" + mimic.joint + "\", which does not exist; check the spelling");
+      Refuse(subject + " mimics joint \"" + mimic.joint +
+             "\", which does not exist; check the spelling");
     }
     if (master->type == JointType::kFixed) {
       Refuse(subject + " mimics joint \"" + mimic.joint + "\", which does not move; make it fixed");
@@ -74,8 +75,9 @@ Mimic ResolveMimic(const UrdfDocument& document, const UrdfJoint& joint) {
 
 Joint MakeJoint(const UrdfDocument& document, const UrdfJoint& source) {
   if (source.type_name == "floating" || source.type_name == "planar") {
-    Refuse(source.place + ": joint \"" + source.name + "\" is " + source.type_name +
-           ", which is not supported; the root link floats by itself, so remove the joint above it");
+    Refuse(
+        source.place + ": joint \"" + source.name + "\" is " + source.type_name +
+        ", which is not supported; the root link floats by itself, so remove the joint above it");
   }
   Joint joint;
   joint.name = source.name;

@@ -22,8 +22,8 @@ struct RobotFiles {
   PackageMap packages;
 };
 
-/** A posture by the names of independent joints, as read from an SRDF group_state; values as stored,
- limits unchecked. States of one name for several groups are one posture. */
+/** A posture by the names of independent joints, as read from an SRDF group_state; values as
+ stored, limits unchecked. States of one name for several groups are one posture. */
 struct NamedPosture {
   std::string name;
   std::map<std::string, double> joints;

@@ -29,10 +29,10 @@ Pose ReadPlacement(const XmlFile& xml, const XMLElement& terrain) {
 
 Eigen::Vector3d ReadScale(const XmlFile& xml, const XMLElement& terrain) {
   const char* text = terrain.Attribute("scale");
-  const bool one_factor = text != nullptr && std::string(text).find_first_of(" \t") == std::string::npos;
-  const Eigen::Vector3d scale = one_factor
-                                    ? Eigen::Vector3d::Constant(xml.Number(terrain, "scale"))
-                                    : xml.Vector(terrain, "scale", Eigen::Vector3d::Ones());
+  const bool one_factor =
+      text != nullptr && std::string(text).find_first_of(" \t") == std::string::npos;
+  const Eigen::Vector3d scale = one_factor ? Eigen::Vector3d::Constant(xml.Number(terrain, "scale"))
+                                           : xml.Vector(terrain, "scale", Eigen::Vector3d::Ones());
   if ((scale.array() == 0).any()) {
     xml.Refuse(terrain, "the scale of a <terrain> is zero", "give factors other than zero");
   }
@@ -55,8 +55,11 @@ std::vector<Object> ReadKlamptWorld(const XmlFile& xml, const Pose& X_WS, double
     const int use = ++uses[stem];
     Object object{use == 1 ? stem : stem + "_" + std::to_string(use), friction, {}};
     const Pose X_WP = Compose(X_WS, ReadPlacement(xml, *item));
-    const TriangleMesh mesh = ReadMesh(file, ReadScale(xml, *item));
-    for (PieceShape& shape : MakePieces(mesh, MeshUse::kAuto, file.string())) {
+    const Eigen::Vector3d scale = ReadScale(xml, *item);
+    std::vector<PieceShape> shapes = ReadAt(xml.Place(*item), [&] {
+      return MakePieces(ReadMesh(file, scale), MeshUse::kAuto, file.string());
+    });
+    for (PieceShape& shape : shapes) {
       object.pieces.push_back({X_WP, std::move(shape)});
     }
     objects.push_back(std::move(object));
@@ -65,8 +68,8 @@ std::vector<Object> ReadKlamptWorld(const XmlFile& xml, const Pose& X_WS, double
     xml.Refuse(xml.root(), "the world has no <terrain>", "give a world with static obstacles");
   }
   if (!ignored.empty()) {
-    warnings->push_back(xml.path().string() + ": robots and movable objects are left out: " +
-                        ListNames(ignored));
+    warnings->push_back(xml.path().string() +
+                        ": robots and movable objects are left out: " + ListNames(ignored));
   }
   return objects;
 }

@@ -14,7 +14,9 @@ struct PieceReader {
   const std::string& place;
   std::vector<PieceShape> operator()(const UrdfMesh& mesh) const {
     const auto file = ResolveUri(mesh.uri, urdf, packages, place);
-    return MakePieces(ReadMesh(file, mesh.scale), MeshUse::kAuto, file.string());
+    return ReadAt(place, [&] {
+      return MakePieces(ReadMesh(file, mesh.scale), MeshUse::kAuto, file.string());
+    });
   }
   template <typename Shape>
   std::vector<PieceShape> operator()(const Shape& shape) const {
@@ -38,8 +40,8 @@ void WarnOfJoints(const UrdfDocument& document, std::vector<std::string>* warnin
     if (joint.type_name != "fixed") moving.push_back(joint.name);
   }
   if (moving.empty()) return;
-  warnings->push_back(document.file + ": the scene is static, joints stand at zero: " +
-                      ListNames(moving));
+  warnings->push_back(document.file +
+                      ": the scene is static, joints stand at zero: " + ListNames(moving));
 }
 
 }  // namespace
@@ -50,10 +52,9 @@ Pose Compose(const Pose& X_AB, const Pose& X_BC) {
   const double norm2 = a.x * a.x + a.y * a.y + a.z * a.z + a.w * a.w;
   Pose X;
   X.p = UnnormalisedRotation(a.x, a.y, a.z, a.w) * X_BC.p / norm2 + X_AB.p;
-  X.q = {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-         a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-         a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
-         a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
+  X.q = {
+      a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+      a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
   return X;
 }
 

@@ -13,9 +13,10 @@ namespace cguide::numeric::io {
  quaternion is a plain product, its norm that of the factors up to rounding. */
 Pose Compose(const Pose& X_AB, const Pose& X_BC);
 
-/** The terrains of a Klampt world file (root element <world>) as objects: mesh scaled, rotated about
- one axis by rotateX, rotateY or rotateZ (rad), then translated. Objects are called after their mesh
- file, numbered from the second on. Robots and movable objects are left out with a warning.
+/** The terrains of a Klampt world file (root element <world>) as objects: mesh scaled, rotated
+ about one axis by rotateX, rotateY or rotateZ (rad), then translated. Objects are called after
+ their mesh file, numbered from the second on. Robots and movable objects are left out with a
+ warning.
  @throws Error (kBadInput, kIo) with file and line. */
 std::vector<Object> ReadKlamptWorld(const XmlFile& xml, const Pose& X_WS, double friction,
                                     std::vector<std::string>* warnings);

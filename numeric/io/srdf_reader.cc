@@ -1,8 +1,7 @@
-#include "cguide/numeric/io/srdf_reader_internal.h"
-
 #include <algorithm>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/numeric/io/srdf_reader_internal.h"
 #include "cguide/numeric/io/urdf_xml_internal.h"
 
 namespace cguide::numeric::io {
@@ -65,12 +64,12 @@ void ReadPostures(const XmlFile& xml, RobotDescription* description) {
     }
     const std::string subject = xml.Place(*state) + ": posture \"" + posture->name + "\" ";
     if (!skipped.unknown.empty()) {
-      description->warnings.push_back(subject + "names joints the robot does not have, skipped: " +
-                                      ListNames(skipped.unknown));
+      description->warnings.push_back(
+          subject + "names joints the robot does not have, skipped: " + ListNames(skipped.unknown));
     }
     if (!skipped.dependent.empty()) {
-      description->warnings.push_back(subject + "sets fixed or mimic joints, skipped: " +
-                                      ListNames(skipped.dependent));
+      description->warnings.push_back(
+          subject + "sets fixed or mimic joints, skipped: " + ListNames(skipped.dependent));
     }
   }
 }
@@ -117,7 +116,8 @@ void ReadEndEffectors(const XmlFile& xml, RobotDescription* description) {
 void ReadSrdf(const std::filesystem::path& srdf, RobotDescription* description) {
   const XmlFile xml(srdf);
   if (std::string(xml.root().Name()) != "robot") {
-    xml.Refuse(xml.root(), std::string("the root element is <") + xml.root().Name() + ">, not <robot>",
+    xml.Refuse(xml.root(),
+               std::string("the root element is <") + xml.root().Name() + ">, not <robot>",
                "give an SRDF file");
   }
   const std::string name = xml.Text(xml.root(), "name");

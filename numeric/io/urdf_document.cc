@@ -32,13 +32,15 @@ Pose ReadOrigin(const XmlFile& xml, const XMLElement& parent) {
 double ReadLength(const XmlFile& xml, const XMLElement& element, const char* attribute) {
   const double value = xml.Number(element, attribute);
   if (!(value > 0)) {
-    xml.Refuse(element, std::string("the ") + attribute + " of a <" + element.Name() + "> is not positive",
+    xml.Refuse(element,
+               std::string("the ") + attribute + " of a <" + element.Name() + "> is not positive",
                "give it in metres");
   }
   return value;
 }
 
-std::variant<Box, Sphere, Cylinder, UrdfMesh> ReadShape(const XmlFile& xml, const XMLElement& shape) {
+std::variant<Box, Sphere, Cylinder, UrdfMesh> ReadShape(const XmlFile& xml,
+                                                        const XMLElement& shape) {
   const std::string kind = shape.Name();
   if (kind == "box") {
     const std::vector<double> size = xml.Numbers(shape, "size", 3);
@@ -54,8 +56,7 @@ std::variant<Box, Sphere, Cylinder, UrdfMesh> ReadShape(const XmlFile& xml, cons
   if (kind != "mesh") {
     xml.Refuse(shape, "unknown geometry <" + kind + ">", "use box, sphere, cylinder or mesh");
   }
-  UrdfMesh mesh{xml.Text(shape, "filename"),
-                xml.Vector(shape, "scale", Eigen::Vector3d::Ones())};
+  UrdfMesh mesh{xml.Text(shape, "filename"), xml.Vector(shape, "scale", Eigen::Vector3d::Ones())};
   if ((mesh.scale.array() == 0).any()) {
     xml.Refuse(shape, "the scale of a <mesh> is zero", "give three factors other than zero");
   }
@@ -121,7 +122,8 @@ void ReadType(const XmlFile& xml, const XMLElement& element, UrdfJoint* joint) {
   joint->type_name = xml.Text(element, "type");
   const auto found = kTypes.find(joint->type_name);
   if (found == kTypes.end()) {
-    xml.Refuse(element, "joint \"" + joint->name + "\" has the unknown type \"" + joint->type_name + "\"",
+    xml.Refuse(element,
+               "joint \"" + joint->name + "\" has the unknown type \"" + joint->type_name + "\"",
                "use revolute, continuous, prismatic or fixed");
   }
   joint->type = found->second;
@@ -165,9 +167,10 @@ int FindEnd(const XmlFile& xml, const XMLElement& element, const char* end, cons
   const std::string name = xml.Text(*child, "link");
   const auto found = links.find(name);
   if (found == links.end()) {
-    xml.Refuse(*child, "joint \"" + joint + "\" names the " + end + " link \"" + name +
-                           "\", which does not exist",
-               "check the spelling");
+    xml.Refuse(
+        *child,
+        "joint \"" + joint + "\" names the " + end + " link \"" + name + "\", which does not exist",
+        "check the spelling");
   }
   return found->second;
 }

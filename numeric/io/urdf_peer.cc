@@ -21,7 +21,8 @@ class Chatter : public console_bridge::OutputHandler {
   }
   ~Chatter() override { console_bridge::useOutputHandler(previous_); }
   void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) text_ += (text_.empty() ? "" : " ") + text;
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR)
+      text_ += (text_.empty() ? "" : " ") + text;
   }
   const std::string& text() const { return text_; }
 
@@ -177,8 +178,8 @@ void CompareWithUrdfdom(const XmlFile& xml, UrdfDocument* document) {
   if (peer) {
     CompareModels(*peer, *document);
   } else {
-    document->warnings.push_back(document->file + ": read, but other programs may refuse it, as urdfdom does: " +
-                                 complaint);
+    document->warnings.push_back(
+        document->file + ": read, but other programs may refuse it, as urdfdom does: " + complaint);
   }
 }
 

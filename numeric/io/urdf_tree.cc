@@ -4,6 +4,9 @@
 namespace cguide::numeric::io {
 namespace {
 
+// The peer reader frees the tree recursively, so that a chain must not be endless.
+constexpr std::size_t kMostLinks = 10'000;
+
 [[noreturn]] void Refuse(const std::string& what) { throw Error(Error::Code::kBadInput, what); }
 
 // The joint above each link, -1 for roots.
@@ -34,7 +37,8 @@ int FindRoot(const UrdfDocument& document, const std::vector<int>& parent) {
     root = static_cast<int>(i);
   }
   if (root < 0) {
-    Refuse(document.file + ": no link is without parent, so the joints make a cycle; remove a joint");
+    Refuse(document.file +
+           ": no link is without parent, so the joints make a cycle; remove a joint");
   }
   return root;
 }
@@ -43,6 +47,9 @@ int FindRoot(const UrdfDocument& document, const std::vector<int>& parent) {
 
 void OrderLinks(UrdfDocument* document) {
   if (document->links.empty()) Refuse(document->file + ": holds no <link>; give a URDF file");
+  if (document->links.size() > kMostLinks) {
+    Refuse(document->file + ": more than 10000 links; give a robot with fewer");
+  }
   const std::vector<int> parent = FindParents(*document);
   const int root = FindRoot(*document, parent);
   std::vector<std::vector<int>> below(document->links.size());

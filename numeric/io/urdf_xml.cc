@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -9,27 +10,6 @@ namespace cguide::numeric::io {
 namespace {
 
 constexpr std::uintmax_t kLargestDescription = 64u << 20;
-
-bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-// One number; std::from_chars is correctly rounded and knows no locale. It takes no leading '+'.
-double ParseNumber(const std::string& word) {
-  const char* begin = word.data();
-  const char* end = begin + word.size();
-  if (begin != end && *begin == '+' && begin + 1 != end && begin[1] != '-') ++begin;
-  double value = 0;
-  const auto [stop, status] = std::from_chars(begin, end, value);
-  if (status == std::errc::result_out_of_range) {
-    throw Error(Error::Code::kBadInput, "\"" + word + "\" is beyond the range of doubles");
-  }
-  if (status != std::errc() || stop != end) {
-    throw Error(Error::Code::kBadInput, "\"" + word + "\" is no number");
-  }
-  if (!std::isfinite(value)) {
-    throw Error(Error::Code::kBadInput, "\"" + word + "\" is not finite");
-  }
-  return value;
-}
 
 }  // namespace
 
@@ -64,8 +44,7 @@ XmlFile::XmlFile(const std::filesystem::path& file) : path_(file) {
   }
   if (document_.Parse(bytes.data(), bytes.size()) != tinyxml2::XML_SUCCESS) {
     throw Error(Error::Code::kBadInput,
-                name + ":" + std::to_string(document_.ErrorLineNum()) +
-                    ": malformed XML (" +
+                name + ":" + std::to_string(document_.ErrorLineNum()) + ": malformed XML (" +
                     tinyxml2::XMLDocument::ErrorIDToName(document_.ErrorID()) +
                     "); the file may be truncated or no XML at all");
   }
@@ -101,7 +80,8 @@ std::string XmlFile::Text(const tinyxml2::XMLElement& element, const char* attri
 
 std::vector<double> XmlFile::Numbers(const tinyxml2::XMLElement& element, const char* attribute,
                                      std::size_t count) const {
-  const std::string what = std::string("attribute \"") + attribute + "\" of <" + element.Name() + ">";
+  const std::string what =
+      std::string("attribute \"") + attribute + "\" of <" + element.Name() + ">";
   std::vector<double> numbers;
   try {
     numbers = ParseNumbers(Text(element, attribute));
@@ -147,17 +127,34 @@ std::vector<const tinyxml2::XMLElement*> Children(const tinyxml2::XMLElement& pa
   return result;
 }
 
-std::vector<double> ParseNumbers(const std::string& text) {
+double ParseNumber(std::string_view word) {
+  const std::string quoted = "\"" + std::string(word) + "\"";
+  // std::from_chars is correctly rounded and knows no locale. It takes no leading '+'.
+  std::string_view digits = word;
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+  double value = 0;
+  const char* end = digits.data() + digits.size();
+  const auto [stop, status] = std::from_chars(digits.data(), end, value);
+  if (status == std::errc::result_out_of_range) {
+    // Too small for any double but zero, unless it is too large.
+    if (word.find("e-") != word.npos || word.find("E-") != word.npos) return 0;
+    throw Error(Error::Code::kBadInput, quoted + " is beyond the range of doubles");
+  }
+  if (status != std::errc() || stop != end) {
+    throw Error(Error::Code::kBadInput, quoted + " is no number");
+  }
+  if (!std::isfinite(value)) throw Error(Error::Code::kBadInput, quoted + " is not finite");
+  return value;
+}
+
+std::vector<double> ParseNumbers(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\r\n";
   std::vector<double> numbers;
-  for (std::size_t i = 0; i < text.size();) {
-    if (IsSpace(text[i])) {
-      ++i;
-      continue;
-    }
-    std::size_t end = i;
-    while (end < text.size() && !IsSpace(text[end])) ++end;
+  std::size_t i = text.find_first_not_of(kSpace);
+  while (i != text.npos) {
+    const std::size_t end = std::min(text.find_first_of(kSpace, i), text.size());
     numbers.push_back(ParseNumber(text.substr(i, end - i)));
-    i = end;
+    i = text.find_first_not_of(kSpace, end);
   }
   return numbers;
 }

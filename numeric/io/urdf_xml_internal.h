@@ -5,12 +5,15 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "cguide/exact/core/error.h"
 
 namespace cguide::numeric::io {
 
-/** No coordinate, mass, limit or factor of a description may exceed this in magnitude: beyond it lie
- unit mistakes and the inputs on which float code overflows. */
+/** No coordinate, mass, limit or factor of a description may exceed this in magnitude: beyond it
+ lie unit mistakes and the inputs on which float code overflows. */
 inline constexpr double kLargestNumber = 1e6;
 
 /** The bytes of a regular file. @throws Error: kIo where it cannot be read, kBadInput where it is
@@ -20,7 +23,8 @@ std::string ReadBytes(const std::filesystem::path& file, std::uintmax_t limit);
 /** An XML file in memory that knows where its elements stand. */
 class XmlFile {
  public:
-  /** @throws Error (kIo, kBadInput): missing, empty, binary, malformed, more than one root element. */
+  /** @throws Error (kIo, kBadInput): missing, empty, binary, malformed, more than one root element.
+   */
   explicit XmlFile(const std::filesystem::path& file);
 
   const std::filesystem::path& path() const { return path_; }
@@ -61,9 +65,24 @@ class XmlFile {
 std::vector<const tinyxml2::XMLElement*> Children(const tinyxml2::XMLElement& parent,
                                                   const char* name);
 
-/** The finite doubles of a text separated by white space, each correctly rounded.
- @throws Error (kBadInput) that quotes the offending word; the caller adds the place. */
-std::vector<double> ParseNumbers(const std::string& text);
+/** The finite double nearest to a decimal ("-1", "+.5", "2.e-3"), in every locale.
+ @throws Error (kBadInput) that quotes the word; the caller adds the place. */
+double ParseNumber(std::string_view word);
+
+/** The numbers of a text separated by white space. */
+std::vector<double> ParseNumbers(std::string_view text);
+
+/** Calls `read` and puts "place: " before the message of an Error that does not begin with it. */
+template <typename Read>
+auto ReadAt(const std::string& place, const Read& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (message.starts_with(place)) throw;
+    throw Error(error.code(), place + ": " + message);
+  }
+}
 
 /** "a", "b" and 3 more: names for a message, at most `limit` of them in full. */
 std::string ListNames(const std::vector<std::string>& names, std::size_t limit = 5);

@@ -18,8 +18,8 @@ enum ExitCode {
 
 /** What every command takes. */
 struct CommonArguments {
-  bool quiet = false;   ///< no talk on stderr but errors
-  int threads = 0;      ///< 0: all that the machine has
+  bool quiet = false;  ///< no talk on stderr but errors
+  int threads = 0;     ///< 0: all that the machine has
 };
 
 struct PlanArguments {
@@ -32,9 +32,9 @@ struct PlanArguments {
   double time_limit_s = 300;
   long iteration_limit = 10'000'000;
   double edge_step = 0.02;
-  double extension = 0;         ///< 0: the planner's default
+  double extension = 0;  ///< 0: the planner's default
   int shortcut_rounds = 120;
-  std::string stats;            ///< file for times and counters, or empty
+  std::string stats;  ///< file for times and counters, or empty
 };
 
 struct AuditArguments {
@@ -49,21 +49,21 @@ struct AuditArguments {
 struct StabilityArguments {
   CommonArguments common;
   std::string problem;
-  std::string posture;          ///< "start", "goal" or a posture's name at the start's root pose
+  std::string posture;  ///< "start", "goal" or a posture's name at the start's root pose
   std::string guide;
-  double at = -1;               ///< edge index + s along the guide
+  double at = -1;  ///< edge index + s along the guide
   std::string format = "text";
 };
 
 struct ModelArguments {
   CommonArguments common;
   std::string problem;
-  std::string output;           ///< file, or empty for stdout
+  std::string output;  ///< file, or empty for stdout
 };
 
 struct DoctorArguments {
   CommonArguments common;
-  std::string problem;          ///< empty: the machine alone
+  std::string problem;  ///< empty: the machine alone
 };
 
 struct ViewArguments {
@@ -71,7 +71,7 @@ struct ViewArguments {
   std::string guide;
   std::string problem;
   std::string output;
-  int frames = 0;               ///< 0: chosen from the guide's length
+  int frames = 0;  ///< 0: chosen from the guide's length
 };
 
 /** Each runs one command and returns its exit code; errors leave as cguide::Error. */

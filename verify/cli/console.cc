@@ -51,7 +51,8 @@ void ProgressLine::Show(const std::string& text) {
   using std::chrono::seconds;
   const auto now = std::chrono::steady_clock::now();
   if (quiet_ || now - begin_ < seconds(2)) return;
-  if (now - last_ < (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(10000))) {
+  if (now - last_ <
+      (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(10000))) {
     return;
   }
   last_ = now;
@@ -68,13 +69,12 @@ int ThreadCount(const CommonArguments& common) {
 void RequireWritable(const std::filesystem::path& file) {
   std::filesystem::path folder = file.parent_path();
   if (folder.empty()) folder = ".";
-  const bool folder_ok =
-      std::filesystem::is_directory(folder) && access(folder.c_str(), W_OK) == 0;
+  const bool folder_ok = std::filesystem::is_directory(folder) && access(folder.c_str(), W_OK) == 0;
   if (folder_ok && !std::filesystem::is_directory(file)) return;
-  throw Error(Error::Code::kIo, file.string() + ": cannot be written; " +
-                                    (folder_ok ? "it is a folder, name a file in it"
-                                               : "create the folder " + folder.string() +
-                                                     " or choose another one"));
+  throw Error(Error::Code::kIo,
+              file.string() + ": cannot be written; " +
+                  (folder_ok ? "it is a folder, name a file in it"
+                             : "create the folder " + folder.string() + " or choose another one"));
 }
 
 std::string Short(double x) {

@@ -18,8 +18,8 @@ void InstallInterruptHandler();
 void Say(const CommonArguments& common, const std::string& line);
 void Warn(const CommonArguments& common, const std::vector<std::string>& warnings);
 
-/** A line on stderr that is rewritten on a terminal and repeated every ten seconds elsewhere. Begins
- to talk after two seconds. */
+/** A line on stderr that is rewritten on a terminal and repeated every ten seconds elsewhere.
+ Begins to talk after two seconds. */
 class ProgressLine {
  public:
   explicit ProgressLine(const CommonArguments& common);

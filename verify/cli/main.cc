@@ -12,7 +12,8 @@ namespace {
 
 void AddCommon(CLI::App* command, CommonArguments* common) {
   command->add_flag("-q,--quiet", common->quiet, "No talk on stderr, errors only");
-  command->add_option("--threads", common->threads, "Threads to use; the result does not depend on it")
+  command
+      ->add_option("--threads", common->threads, "Threads to use; the result does not depend on it")
       ->check(CLI::Range(1, 1024));
 }
 
@@ -47,7 +48,8 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
 }
 
 CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
-  CLI::App* c = app.add_subcommand("audit", "Say whether a guide or a foreign path stays in C_guide");
+  CLI::App* c =
+      app.add_subcommand("audit", "Say whether a guide or a foreign path stays in C_guide");
   c->add_option("path", a->path, "Guide (JSON), or path (CSV) with --problem")->required();
   c->add_option("--problem", a->problem, "Problem file; default: the one the guide names");
   c->add_option("--dense", a->dense_step, "Sample every edge at this step")
@@ -64,7 +66,8 @@ CLI::App* AddStability(CLI::App& app, StabilityArguments* a) {
   CLI::App* c = app.add_subcommand(
       "stability", "Exact verdict on the balance of one configuration, with forces or a wrench");
   c->add_option("problem", a->problem, "Problem file; with --guide the default is the guide's");
-  c->add_option("--posture", a->posture, "start, goal, or a posture placed at the start's root pose");
+  c->add_option("--posture", a->posture,
+                "start, goal, or a posture placed at the start's root pose");
   c->add_option("--guide", a->guide, "Take the configuration from a guide or CSV path");
   c->add_option("--at", a->at, "Edge index plus s, as in 12.5")->check(CLI::NonNegativeNumber);
   c->add_option("--format", a->format, "Form of the report")
@@ -141,9 +144,11 @@ int Main(int argc, char** argv) {
 int ExitCodeOf(const Error& error) {
   switch (error.code()) {
     case Error::Code::kBadInput:
-    case Error::Code::kIo: return kExitBadInput;
+    case Error::Code::kIo:
+      return kExitBadInput;
     case Error::Code::kInvalidArgument:
-    case Error::Code::kInternal: break;
+    case Error::Code::kInternal:
+      break;
   }
   return kExitInternal;
 }

@@ -76,8 +76,8 @@ Plan MakePlan(const PlanArguments& arguments, const World& world, const Problem&
   const planner::ExtensionOptions extension = MakeExtension(arguments);
   planner::ProjectionWorkspace workspace(world);
   Plan plan;
-  plan.start = planner::PrepareEndpoint(world, problem.start, extension.space, "start", {},
-                                        &workspace);
+  plan.start =
+      planner::PrepareEndpoint(world, problem.start, extension.space, "start", {}, &workspace);
   plan.goal =
       planner::PrepareEndpoint(world, problem.goal, extension.space, "goal", {}, &workspace);
   if (plan.start.projected) Say(arguments.common, "the start was projected into C_guide");
@@ -154,7 +154,8 @@ int Conclude(const PlanArguments& arguments, const Problem& problem, const Plan&
   if (result.stop != StopReason::kSolved) {
     Say(arguments.common, std::string("no guide found: ") + planner::ToString(result.stop) +
                               " after " + std::to_string(result.iterations) + " iterations and " +
-                              Short(result.seconds) + " s; try another --seed or a longer "
+                              Short(result.seconds) +
+                              " s; try another --seed or a longer "
                               "--time-limit");
     return result.stop == StopReason::kInterrupted ? kExitInterrupted : kExitUndecided;
   }
@@ -167,8 +168,9 @@ int Conclude(const PlanArguments& arguments, const Problem& problem, const Plan&
           " iterations, " + std::to_string(result.start_nodes + result.goal_nodes) +
           " nodes), shortcuts " + Short(plan.shortcut_seconds) + " s, length " +
           Short(plan.length_before) + " -> " + Short(planner::Length(result.waypoints)));
-  Say(arguments.common, "next: cguide view " + arguments.output + " -o page.html   or   cguide audit " +
-                            arguments.output + " --dense 0.002");
+  Say(arguments.common, "next: cguide view " + arguments.output +
+                            " -o page.html   or   cguide audit " + arguments.output +
+                            " --dense 0.002");
   return kExitOk;
 }
 
