@@ -1,5 +1,6 @@
 #include "cguide/numeric/sites.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,5 +1,6 @@
 #include "cguide/planner/projection.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace cguide::planner {
