@@ -11,37 +11,60 @@ using Eigen::Vector3d;
 
 // Exit through a face of a box for a site that touches it or is inside: the nearest face whose plane
 // no piece near y pierces, so that the joint between two tiles is no way out.
-Verdict Uncovered(const Geometry& g, const std::vector<SiteCandidate>& all, std::size_t self,
-                  const PointProjection& p, double seam, double error) {
+bool Uncovered(const Geometry& g, const std::vector<SiteCandidate>& all, std::size_t self,
+               const PointProjection& p, double seam, double error) {
   // Seen from a point far above y the question "does anything rise above the plane within the seam"
-  // is "is anything nearer": at 1 m the sphere and the plane differ by seam^2 / 2.
+  // is "is anything nearer": at 1 m the sphere and the plane differ by seam^2 / 2. Coplanar
+  // neighbours graze the sphere by rounding and come back undecided: they do not rise.
   const Vector3d above = p.y + p.n;
-  Verdict verdict = Verdict::kHolds;
   for (std::size_t j = 0; j < all.size(); ++j) {
     if (j == self) continue;
-    const Verdict one = StaysClosest(g, all[j], above, p.y, seam, error + seam * seam);
-    if (one == Verdict::kFails) return one;
-    if (one == Verdict::kUndecided && verdict == Verdict::kHolds) {
-      // Coplanar neighbours graze the sphere by rounding: they do not rise above the plane.
-      verdict = Verdict::kHolds;
+    if (StaysClosest(g, all[j], above, p.y, seam, error + seam * seam) == Verdict::kFails) {
+      return false;
     }
   }
-  return verdict;
+  return true;
+}
+
+// Outward normal, and depth below its plane, of face `f` of a box or hull; l in the set's frame.
+struct FaceExit {
+  Vector3d n;
+  double depth;
+};
+
+int NumFaces(const Convex& s) { return s.kind == CoreKind::kBox ? 3 : s.num_faces; }
+
+FaceExit ExitThrough(const Convex& s, const Vector3d& l, int f) {
+  if (s.kind == CoreKind::kBox) {
+    Vector3d n = Vector3d::Zero();
+    n[f] = l[f] < 0 ? -1 : 1;
+    return {n, s.half[f] - std::abs(l[f])};
+  }
+  const Vector3d& a = s.points[s.faces[f][0]];
+  const Vector3d n = (s.points[s.faces[f][1]] - a).cross(s.points[s.faces[f][2]] - a);
+  const double length = n.norm();
+  if (!(length > 0)) return {Vector3d::UnitZ(), INFINITY};
+  return {n / length, n.dot(a - l) / length};
 }
 
 void LeaveThroughFace(const Geometry& g, const std::vector<SiteCandidate>& all, std::size_t self,
                       const Vector3d& x, double seam, double error, PointProjection* p) {
   const Convex& s = g.pieces[all[self].piece].convex;
   const Vector3d l = s.R.transpose() * (x - s.c);
-  std::array<int, 3> axes{0, 1, 2};
-  const Vector3d depth = s.half - l.cwiseAbs();
-  std::sort(axes.begin(), axes.end(), [&depth](int i, int j) { return depth[i] < depth[j]; });
-  for (int axis : axes) {
+  double tried = -INFINITY;
+  while (true) {
+    FaceExit next{Vector3d::Zero(), INFINITY};
+    for (int f = 0; f < NumFaces(s); ++f) {
+      const FaceExit exit = ExitThrough(s, l, f);
+      if (exit.depth > tried && exit.depth < next.depth) next = exit;
+    }
+    if (!std::isfinite(next.depth)) return;
+    tried = next.depth;
     PointProjection exit = *p;
-    exit.n = (l[axis] < 0 ? -1.0 : 1.0) * s.R.col(axis);
-    exit.distance = -depth[axis];
-    exit.y = x - exit.distance * exit.n;
-    if (Uncovered(g, all, self, exit, seam, error) == Verdict::kHolds) {
+    exit.n = s.R * next.n;
+    exit.distance = -next.depth;
+    exit.y = x + next.depth * exit.n;
+    if (Uncovered(g, all, self, exit, seam, error)) {
       *p = exit;
       return;
     }
@@ -115,7 +138,7 @@ struct SiteQuery {
         if (all[i].p.distance < skin + DistanceError(all[i])) {
           SignByBody(*piece.mesh, all[i].triangle, site, &all[i].p);
         }
-      } else if (piece.kind == PieceKind::kConvex && piece.convex.kind == CoreKind::kBox &&
+      } else if (piece.kind == PieceKind::kConvex && piece.convex.kind != CoreKind::kCylinder &&
                  piece.convex.radius == 0 && all[i].p.distance < DistanceError(all[i])) {
         LeaveThroughFace(g, all, i, site.x, rules.seam, DistanceError(all[i]), &all[i].p);
       }

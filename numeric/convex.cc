@@ -73,7 +73,7 @@ void ProjectOnPoints(const Convex& s, const Vector3d& x, PointProjection* p) {
   p->y = s.c + gjk.b;
   const double hi = gjk.v.norm();
   p->n = gjk.v / hi;
-  const double lo = p->n.dot(x - s.c) - CoreExtent(s, p->n);
+  const double lo = std::max(0.0, p->n.dot(x - s.c) - CoreExtent(s, p->n));
   p->distance = hi;
   p->distance_error += std::abs(hi - lo);
   p->y_error = p->distance_error + ProjectionError(hi + p->distance_error, lo - p->distance_error);
@@ -154,7 +154,8 @@ PointProjection ProjectPoint(const Vector3d& a, const Vector3d& b, const Vector3
   p.n = hi > 0 ? Vector3d((x - p.y) / hi) : Vector3d(Vector3d::UnitZ());
   // y is a combination of corners with weights in [0, 1] that are rounded, 16 u of the corners' size.
   p.distance_error = error + 96 * kUnit * x.norm();
-  const double lo = p.n.dot(x - a) - std::max({0.0, p.n.dot(b - a), p.n.dot(c - a)});
+  const double lo =
+      std::max(0.0, p.n.dot(x - a) - std::max({0.0, p.n.dot(b - a), p.n.dot(c - a)}));
   p.distance_error += std::abs(hi - lo);
   p.y_error = p.distance_error + ProjectionError(hi + p.distance_error, lo - p.distance_error);
   return p;

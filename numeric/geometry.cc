@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cguide/exact/convex_hull.h"
 #include "cguide/exact/core/rational.h"
 
 namespace cguide::numeric {
@@ -72,8 +73,9 @@ std::vector<ExactPose> LinkPoses(const Robot& robot) {
 
 // The convex set of the hull of `vertices`, in the axes of the frame X places it in; `points` keeps
 // what the set refers to. Subtracting the centre rounds once more, within u of |v| + |c|.
-void SetPoints(const ExactPose& X, const Hull& hull, std::vector<Vector3d>* points,
+void SetPoints(const ExactPose& X, const Hull& given, std::vector<Vector3d>* points,
                std::vector<std::array<int, 3>>* faces, Convex* s) {
+  const Hull hull = given.faces.empty() ? exact::ConvexHull(given.vertices) : given;
   points->clear();
   for (const Vector3d& v : hull.vertices) points->push_back(Round(Apply(X, Lift(v))));
   Vector3d lower = points->front(), upper = points->front();

@@ -210,11 +210,12 @@ TEST_CASE("with a skin feet may stand on the floor and a little in it, however i
         CHECK(std::abs(c.distance - z) < 1e-12);
       }
     }
-    if (name.find("tile") == std::string::npos && name != "cracked") {
+    {
       CAPTURE(name);
       const Seen deep = Look(objects, At(Vector3d(0.013, 0.017, -0.002)), 0.001);
       CHECK(deep.verdict == Verdict::kFails);
-      CHECK(deep.contacts.empty());
+      // From below a sheet is an obstacle like any other.
+      if (name == "halfspace" || name == "box" || name == "hull") CHECK(deep.contacts.empty());
     }
   }
 }
