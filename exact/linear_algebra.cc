@@ -7,14 +7,6 @@
 namespace cguide::exact {
 namespace {
 
-template <typename Vector>
-Rational DotOf(const Vector& a, const Vector& b) {
-  Require(a.size() == b.size(), "vectors of different sizes have no inner product");
-  Rational sum = 0;
-  for (Eigen::Index i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 /** floor(sqrt(x 4^k)) / 2^k with k such that the integer root has at least 52 bits. */
 Rational RootBelow(const Rational& x, mpz_class* remainder, mpz_class* scale) {
   Require(x >= 0, "the square root of a negative number is not real");
@@ -34,10 +26,6 @@ Rational RootBelow(const Rational& x, mpz_class* remainder, mpz_class* scale) {
 }
 
 }  // namespace
-
-Rational Dot(const Vector3q& a, const Vector3q& b) { return DotOf(a, b); }
-Rational Dot(const Vector6q& a, const Vector6q& b) { return DotOf(a, b); }
-Rational Dot(const VectorXq& a, const VectorXq& b) { return DotOf(a, b); }
 
 Vector3q Cross(const Vector3q& a, const Vector3q& b) {
   return {Rational(a[1] * b[2] - a[2] * b[1]), Rational(a[2] * b[0] - a[0] * b[2]),

@@ -2,15 +2,20 @@
 
 #include <vector>
 
+#include "cguide/exact/core/error.h"
 #include "cguide/exact/core/pose.h"
 #include "cguide/exact/core/rational.h"
 
 namespace cguide::exact {
 
 /** Textbook linear algebra over Q. Eigen is a container here; nothing is ever rounded. */
-Rational Dot(const Vector3q& a, const Vector3q& b);
-Rational Dot(const Vector6q& a, const Vector6q& b);
-Rational Dot(const VectorXq& a, const VectorXq& b);
+template <typename A, typename B>
+Rational Dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  Require(a.size() == b.size(), "vectors of different sizes have no inner product");
+  Rational sum = 0;
+  for (Eigen::Index i = 0; i < a.size(); ++i) sum += Rational(a(i)) * Rational(b(i));
+  return sum;
+}
 Vector3q Cross(const Vector3q& a, const Vector3q& b);
 Rational SquaredNorm(const Vector3q& a);
 Vector3q Scaled(const Rational& s, const Vector3q& a);

@@ -3,12 +3,12 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "cguide/numeric/friction.h"
 #include "cguide/numeric/stability.h"
 
 // Shared by the proposing simplex and the deciding certificates of TryStability.
 namespace cguide::numeric {
 
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 /** The contacts of a query, scaled and in structure-of-arrays form: arms from the centre of mass in

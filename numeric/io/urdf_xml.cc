@@ -135,7 +135,7 @@ double ParseNumber(std::string_view word) {
   double value = 0;
   const char* end = digits.data() + digits.size();
   const auto [stop, status] = std::from_chars(digits.data(), end, value);
-  if (status == std::errc::result_out_of_range) {
+  if (status == std::errc::result_out_of_range && stop == end) {
     // Too small for any double but zero, unless it is too large.
     if (word.find("e-") != word.npos || word.find("E-") != word.npos) return 0;
     throw Error(Error::Code::kBadInput, quoted + " is beyond the range of doubles");
