@@ -29,8 +29,8 @@ TEST_CASE("approaches are the nearest sites, in order, and short lists are heads
     Workspace workspace(world);
     Place(world, test::At(Pose{RandomPoint(rng, 1.5), test::RandomQuaternion(rng)}), &workspace);
     std::vector<Approach> all, some;
-    FindApproaches(world, 0.8, 100, &workspace, &all);
-    FindApproaches(world, 0.8, 3, &workspace, &some);
+    FindApproaches(world, {0.8, 100, 1000}, &workspace, &all);
+    FindApproaches(world, {0.8, 3, 1000}, &workspace, &some);
     CAPTURE(i);
     total += static_cast<int>(all.size());
     REQUIRE(some.size() == std::min<std::size_t>(3, all.size()));
@@ -50,7 +50,7 @@ TEST_CASE("approaches are the nearest sites, in order, and short lists are heads
       Workspace scratch(other);
       Place(other, test::At(Vector3d(a.x_W - a.distance * a.n_W)), &scratch);
       std::vector<Approach> at;
-      FindApproaches(other, 0.8, 1, &scratch, &at);
+      FindApproaches(other, {0.8, 1, 1}, &scratch, &at);
       REQUIRE(at.size() == 1);
       REQUIRE(std::abs(at[0].distance) < 1e-9);
     }
@@ -64,7 +64,7 @@ TEST_CASE("nothing within the cutoff gives nothing") {
   Workspace workspace(world);
   std::vector<Approach> approaches;
   Place(world, test::At(Vector3d(10, 10, 10)), &workspace);
-  FindApproaches(world, 0.5, 3, &workspace, &approaches);
+  FindApproaches(world, {0.5, 3, 16}, &workspace, &approaches);
   CHECK(approaches.empty());
 }
 
