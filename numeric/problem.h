@@ -11,7 +11,8 @@
 
 namespace cguide::numeric {
 
-/** Everything a problem file says: the canonical model, where to look, where to start and to end. */
+/** Everything a problem file says: the canonical model, where to look, where to start and to end.
+ */
 struct Problem {
   std::string name;  ///< file name without folder and extension
   Model model;
@@ -20,8 +21,8 @@ struct Problem {
   Configuration start;
   Configuration goal;
   std::vector<std::string> warnings;  ///< for the user, one sentence each
-  std::string model_digest;    ///< "sha256:<hex>" of the canonical model's text
-  std::string problem_digest;  ///< "sha256:<hex>" of the problem file's bytes
+  std::string model_digest;           ///< "sha256:<hex>" of the canonical model's text
+  std::string problem_digest;         ///< "sha256:<hex>" of the problem file's bytes
 };
 
 }  // namespace cguide::numeric

@@ -42,8 +42,8 @@ struct OrientationMode {
   double weight = 1;  ///< > 0, relative
 };
 
-/** base + sum lambda_i (key_i - base), lambda uniform in the positive quadrant of the unit ball of the
- k-norm; with probability local_fraction the result is moved by independent normals of
+/** base + sum lambda_i (key_i - base), lambda uniform in the positive quadrant of the unit ball of
+ the k-norm; with probability local_fraction the result is moved by independent normals of
  local_sigma, clamped into the limits. */
 struct PostureSampling {
   Eigen::VectorXd base;

@@ -13,8 +13,8 @@ namespace cguide::numeric {
 
 class Geometry;  // numeric/geometry_internal.h
 
-/** A model prepared for fast queries: kinematic tree, bounding volumes, collision geometry, sites by
- body. Immutable and shared by threads. */
+/** A model prepared for fast queries: kinematic tree, bounding volumes, collision geometry, sites
+ by body. Immutable and shared by threads. */
 class World {
  public:
   /** @throws Error where CheckModel refuses the model. */
@@ -48,20 +48,20 @@ class Workspace {
   std::unique_ptr<Scratch> scratch;
 };
 
-/** Places the robot: forward kinematics and the shapes' world placements (lazily). Every query below
- is about the configuration placed last. */
+/** Places the robot: forward kinematics and the shapes' world placements (lazily). Every query
+ below is about the configuration placed last. */
 void Place(const World& world, const Configuration& q, Workspace* workspace);
 
 /** Two things that must keep apart: a body and an object, or (self) two bodies. */
 struct Pair {
   int body = -1;
-  int other = -1;     ///< object index, or body index where `self`
+  int other = -1;  ///< object index, or body index where `self`
   bool self = false;
   bool operator==(const Pair&) const = default;
 };
 
-/** Enclosure of a distance. lo <= d <= hi for the real distance of the two closed sets at the placed
- configuration, kinematic error included; 0 where they meet. A poor float answer gives a wide
+/** Enclosure of a distance. lo <= d <= hi for the real distance of the two closed sets at the
+ placed configuration, kinematic error included; 0 where they meet. A poor float answer gives a wide
  enclosure, never a wrong one. */
 struct Clearance {
   double lo = 0;
@@ -97,15 +97,21 @@ struct Approach {
   int body = -1;
   int site = -1;
   int object = -1;
-  Eigen::Vector3d x_W = Eigen::Vector3d::Zero();  ///< site centre
-  Eigen::Vector3d n_W = Eigen::Vector3d::UnitZ(); ///< unit, from the obstacle towards the site
-  double distance = 0;  ///< |x - y| - radius (m); negative inside
+  Eigen::Vector3d x_W = Eigen::Vector3d::Zero();   ///< site centre
+  Eigen::Vector3d n_W = Eigen::Vector3d::UnitZ();  ///< unit, from the obstacle towards the site
+  double distance = 0;                             ///< |x - y| - radius (m); negative inside
 };
 
-/** The nearest approach of each site of each body that may carry contacts, within `cutoff`, ordered
- by (distance, site). At most `per_body` of each body, those the nearest. Plain floats, no bounds:
- it proposes, it does not decide. */
-void FindApproaches(const World& world, double cutoff, int per_body, Workspace* workspace,
+struct ApproachOptions {
+  double cutoff = 0.6;  ///< approaches farther than this are of no interest (m)
+  int per_body = 4;     ///< of each body only its nearest sites
+  int count = 16;       ///< the search may stop when it has this many
+};
+
+/** The nearest approach of each site of each body that may carry contacts, ordered by (distance,
+ site). At least the `count` nearest ones that cutoff and per_body allow are listed; more may be.
+ Plain floats, no bounds: it proposes, it does not decide. */
+void FindApproaches(const World& world, const ApproachOptions& options, Workspace* workspace,
                     std::vector<Approach>* approaches);
 
 }  // namespace cguide::numeric

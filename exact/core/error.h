@@ -7,7 +7,8 @@
 
 namespace cguide {
 
-/** A broken precondition or a malformed file: never the outcome of a question about a configuration.
+/** A broken precondition or a malformed file: never the outcome of a question about a
+ configuration.
 
  what() is one message for the user: what is wrong, where (file and line, or key path), why, and
  what to do about it. */

@@ -35,7 +35,8 @@ void CheckPose(const Pose& X, const std::string& place) {
 
 void CheckLength(double x, const std::string& place, const char* what) {
   if (!(x > 0 && x <= 1e6)) {
-    Refuse(place, std::string(what) + " must be positive and at most 1e6 m, is " + std::to_string(x));
+    Refuse(place,
+           std::string(what) + " must be positive and at most 1e6 m, is " + std::to_string(x));
   }
 }
 
@@ -110,7 +111,8 @@ void CheckRobot(const Robot& robot) {
   for (std::size_t i = 0; i < robot.joints.size(); ++i) CheckJoint(robot, static_cast<int>(i));
   for (const Link& link : robot.links) {
     const std::string where = "link \"" + link.name + "\"";
-    if (!(link.mass >= 0) || !std::isfinite(link.mass)) Refuse(where, "its mass is negative or not finite");
+    if (!(link.mass >= 0) || !std::isfinite(link.mass))
+      Refuse(where, "its mass is negative or not finite");
     CheckFinite(link.com_L, where);
     for (const LinkShape& shape : link.shapes) {
       CheckPose(shape.X_LS, where);
@@ -168,7 +170,9 @@ double TotalMass(const Robot& robot) {
 }
 
 int FindLink(const Robot& robot, const std::string& name) { return FindByName(robot.links, name); }
-int FindJoint(const Robot& robot, const std::string& name) { return FindByName(robot.joints, name); }
+int FindJoint(const Robot& robot, const std::string& name) {
+  return FindByName(robot.joints, name);
+}
 int FindBody(const Robot& robot, const std::string& name) { return FindByName(robot.bodies, name); }
 int FindObject(const Model& model, const std::string& name) {
   return FindByName(model.objects, name);

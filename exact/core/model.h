@@ -22,8 +22,8 @@ struct Mimic {
   bool operator==(const Mimic&) const = default;
 };
 
-/** Joint between two links. At value t the child's pose in the parent is X_PJ * Rot(axis/|axis|, t),
- or X_PJ * Trans(t axis/|axis|) for a prismatic joint (rad, m). */
+/** Joint between two links. At value t the child's pose in the parent is X_PJ * Rot(axis/|axis|,
+ t), or X_PJ * Trans(t axis/|axis|) for a prismatic joint (rad, m). */
 struct Joint {
   std::string name;
   JointType type = JointType::kFixed;
@@ -47,15 +47,16 @@ struct LinkShape {
 
 struct Link {
   std::string name;
-  int joint = -1;     ///< index of the joint whose child this is; -1 for the root
-  double mass = 0;    ///< kg; 0 is allowed
+  int joint = -1;   ///< index of the joint whose child this is; -1 for the root
+  double mass = 0;  ///< kg; 0 is allowed
   Eigen::Vector3d com_L = Eigen::Vector3d::Zero();  ///< centre of mass in the link's frame (m)
   std::vector<LinkShape> shapes;
-  int body = -1;      ///< index into Robot::bodies
+  int body = -1;  ///< index into Robot::bodies
   bool operator==(const Link&) const = default;
 };
 
-/** Links joined by fixed joints move as one; the body is named after its link nearest to the root. */
+/** Links joined by fixed joints move as one; the body is named after its link nearest to the root.
+ */
 struct Body {
   std::string name;
   std::vector<int> links;
@@ -97,15 +98,16 @@ struct Site {
 
 enum class ContactModel {
   kSites,   ///< the contract: fixed sites, local closest points
-  kNearest  ///< the paper's Definition 1: one closest pair per body; planning and sampled audits only
+  kNearest  ///< the paper's Definition 1: one closest pair per body; planning and sampled audits
+            ///< only
 };
 
 /** The contact rules of a problem. */
 struct ContactRules {
-  double epsilon = 0.04;      ///< contact band (m)
-  double skin = 0;            ///< allowed penetration of `may_touch` pairs (m)
-  double seam = 0.001;        ///< neighbourhood of the local closest point (m)
-  int generators = 4;         ///< sides of the planner's inscribed pyramids
+  double epsilon = 0.04;  ///< contact band (m)
+  double skin = 0;        ///< allowed penetration of `may_touch` pairs (m)
+  double seam = 0.001;    ///< neighbourhood of the local closest point (m)
+  int generators = 4;     ///< sides of the planner's inscribed pyramids
   ContactModel model = ContactModel::kSites;
   std::vector<std::pair<int, int>> may_touch;  ///< (body, object), sorted
   std::vector<int> bodies;                     ///< bodies that may carry contacts, sorted
@@ -149,8 +151,8 @@ void AssignBodiesAndColumns(Robot* robot);
  neighbours of DESIGN part 2. */
 std::vector<std::pair<int, int>> NeighbourBodies(const Robot& robot);
 
-/** Checks every invariant documented in this file: finite numbers, positive sizes, indices in range,
- order, limits not reversed, total mass > 0, gravity not zero.
+/** Checks every invariant documented in this file: finite numbers, positive sizes, indices in
+ range, order, limits not reversed, total mass > 0, gravity not zero.
  @throws Error (kBadInput) that names the offending item and the remedy. */
 void CheckModel(const Model& model);
 

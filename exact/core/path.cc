@@ -21,7 +21,8 @@ Quaternion Slerp(const Quaternion& from, const Quaternion& to, double s) {
   const Vector4d a = Coefficients(from).normalized();
   Vector4d b = Coefficients(to).normalized();
   double dot = a.dot(b);
-  Require(dot != 0, "the two orientations are half a turn apart, so the shorter arc is not defined");
+  Require(dot != 0,
+          "the two orientations are half a turn apart, so the shorter arc is not defined");
   if (dot < 0) {
     b = -b;
     dot = -dot;
@@ -67,8 +68,8 @@ Configuration Interpolate(const Edge& edge, double s) {
 }
 
 double Distance(const Configuration& a, const Configuration& b) {
-  const double dot = std::abs(
-      Coefficients(a.X_WB.q).normalized().dot(Coefficients(b.X_WB.q).normalized()));
+  const double dot =
+      std::abs(Coefficients(a.X_WB.q).normalized().dot(Coefficients(b.X_WB.q).normalized()));
   return (a.X_WB.p - b.X_WB.p).norm() + std::acos(std::min(1.0, dot)) +
          0.3 * (a.joints - b.joints).norm();
 }
@@ -76,9 +77,9 @@ double Distance(const Configuration& a, const Configuration& b) {
 void CheckPath(const Path& path, const Robot& robot) {
   if (path.waypoints.empty()) throw Error(Error::Code::kBadInput, "the path has no waypoint");
   if (path.joint_names != ColumnNames(robot)) {
-    throw Error(Error::Code::kBadInput,
-                "the path's joint names are not those of robot \"" + robot.name +
-                    "\" in its order; compare with `cguide model`");
+    throw Error(Error::Code::kBadInput, "the path's joint names are not those of robot \"" +
+                                            robot.name +
+                                            "\" in its order; compare with `cguide model`");
   }
   for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
     CheckWaypoint(path.waypoints[i], i, robot.num_columns);

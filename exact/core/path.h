@@ -28,7 +28,8 @@ struct Edge {
   Configuration to;
 };
 
-/** A guide or any other polyline in configuration space; edges run between consecutive waypoints. */
+/** A guide or any other polyline in configuration space; edges run between consecutive waypoints.
+ */
 struct Path {
   std::vector<std::string> joint_names;
   std::vector<Configuration> waypoints;
@@ -39,12 +40,13 @@ struct Path {
  @throws Error where the quaternions are orthogonal (q0.q1 = 0 exactly) or s is outside [0,1]. */
 Configuration Interpolate(const Edge& edge, double s);
 
-/** Answers of a question about a configuration or an edge. kUndecided never turns into a yes or no. */
+/** Answers of a question about a configuration or an edge. kUndecided never turns into a yes or no.
+ */
 enum class Verdict { kHolds, kFails, kUndecided };
 
-/** Says whether a whole edge stays in C_guide. What "holds" rests on (samples at a step, or a proof)
- is the oracle's own matter, and the caller who injected it knows. Must be safe to call from several
- threads when the planner is given several. */
+/** Says whether a whole edge stays in C_guide. What "holds" rests on (samples at a step, or a
+ proof) is the oracle's own matter, and the caller who injected it knows. Must be safe to call from
+ several threads when the planner is given several. */
 using EdgeOracle = std::function<Verdict(const Edge&)>;
 
 /** |p - p'| + acos|q.q'| + 0.3 |joints - joints'|: metres and radians mixed by fixed weights. */

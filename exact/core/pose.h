@@ -6,7 +6,8 @@
 namespace cguide {
 
 /** Four doubles that stand for the rotation R = M(q)/|q|^2, which is exactly rigid whatever the
- norm of q, as long as it is not zero. Never normalised in place: the stored doubles are the model. */
+ norm of q, as long as it is not zero. Never normalised in place: the stored doubles are the model.
+ */
 struct Quaternion {
   double x = 0, y = 0, z = 0, w = 1;
   bool operator==(const Quaternion&) const = default;

@@ -30,8 +30,9 @@ double RoundTo(const Rational& x, mpfr_rnd_t direction) {
 }
 
 [[noreturn]] void Refuse(std::string_view text) {
-  throw Error(Error::Code::kBadInput, "\"" + std::string(text.substr(0, 80)) +
-                                          "\" is not a rational number; write 3, -0.25, 1e-3 or 1/7");
+  throw Error(Error::Code::kBadInput,
+              "\"" + std::string(text.substr(0, 80)) +
+                  "\" is not a rational number; write 3, -0.25, 1e-3 or 1/7");
 }
 
 // Reads digits [. digits] [e exponent] without sign.
@@ -40,7 +41,8 @@ Rational ParseDecimal(std::string_view text, std::string_view whole) {
   long scale = 0;
   std::size_t i = 0;
   bool after_point = false;
-  for (; i < text.size() && (std::isdigit(static_cast<unsigned char>(text[i])) || text[i] == '.'); ++i) {
+  for (; i < text.size() && (std::isdigit(static_cast<unsigned char>(text[i])) || text[i] == '.');
+       ++i) {
     if (text[i] == '.') {
       if (after_point) Refuse(whole);
       after_point = true;
@@ -65,8 +67,8 @@ Rational ParseDecimal(std::string_view text, std::string_view whole) {
   }
   mpz_class power;
   mpz_ui_pow_ui(power.get_mpz_t(), 10, static_cast<unsigned long>(std::labs(scale)));
-  Rational result = scale >= 0 ? Rational(mpz_class(digits, 10) * power)
-                               : Rational(mpz_class(digits, 10), power);
+  Rational result =
+      scale >= 0 ? Rational(mpz_class(digits, 10) * power) : Rational(mpz_class(digits, 10), power);
   result.canonicalize();
   return result;
 }

@@ -34,8 +34,8 @@ struct Capsule {
   bool operator==(const Capsule&) const = default;
 };
 
-/** Convex hull of the vertices (m). `faces` are outward triangles for drawing and for placing sites;
- they carry no meaning for any verdict. */
+/** Convex hull of the vertices (m). `faces` are outward triangles for drawing and for placing
+ sites; they carry no meaning for any verdict. */
 struct Hull {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 3>> faces;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cguide/exact/core/path.h"
@@ -12,18 +14,19 @@ namespace cguide::numeric::io {
 /** A guide file (schema cguide-guide/1). */
 struct Guide {
   Path path;
-  std::string problem_file;    ///< as given when it was planned, relative to the guide's folder
+  std::string problem_file;  ///< as given when it was planned, relative to the guide's folder
   std::string model_digest;
   std::string problem_digest;
   std::string tool_version;
   std::uint64_t seed = 0;
-  std::string edges;           ///< how the edges were tested: "sampled(0.01)"
+  std::string edges;  ///< how the edges were tested: "sampled(0.01)"
   bool start_projected = false;
   bool goal_projected = false;
   std::map<std::string, long> counters;  ///< iterations, nodes ...; no times
 };
 
-/** The text of a guide file: shortest round-trip doubles, keys in a fixed order, one waypoint a line. */
+/** The text of a guide file: shortest round-trip doubles, keys in a fixed order, one waypoint a
+ * line. */
 std::string WriteGuide(const Guide& guide);
 
 /** @throws Error (kBadInput, kIo) with file, JSON pointer, cause, remedy. */
@@ -34,8 +37,8 @@ Guide ReadGuide(const std::filesystem::path& file);
 Path ReadPathCsv(const std::filesystem::path& file, const Robot& robot);
 std::string WritePathCsv(const Path& path);
 
-/** The canonical model as text (JSON, schema cguide-model/1): shortest round-trip doubles, keys in a
- fixed order; ReadModel(WriteModel(m)) == m. */
+/** The canonical model as text (JSON, schema cguide-model/1): shortest round-trip doubles, keys in
+ a fixed order; ReadModel(WriteModel(m)) == m. */
 std::string WriteModel(const Model& model);
 Model ReadModel(const std::filesystem::path& file);
 

@@ -18,10 +18,10 @@ struct TriangleMesh {
 
 /** How the triangles of a file are to be understood. */
 enum class MeshUse {
-  kAuto,     ///< per connected component: closed and consistently oriented is solid, else surface
+  kAuto,  ///< per connected component: closed and consistently oriented is solid, else surface
   kHull,
   kSurface,
-  kSolid     ///< refused where a component is open or inconsistently oriented
+  kSolid  ///< refused where a component is open or inconsistently oriented
 };
 
 /** Reads STL (text or binary, also binary that begins with "solid"), OBJ, DAE (up axis and unit of

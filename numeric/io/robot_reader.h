@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,10 +22,14 @@ struct RobotFiles {
   PackageMap packages;
 };
 
-/** A posture by joint name, as read from an SRDF group_state; values as stored, limits unchecked. */
+/** A posture by the names of independent joints, as read from an SRDF group_state; values as
+ stored, limits unchecked. States of one name for several groups are one posture. */
 struct NamedPosture {
   std::string name;
   std::map<std::string, double> joints;
+  /** The seven values (position, then quaternion x y z w) of a joint the robot does not have: its
+   floating root. Not checked to be a unit quaternion. */
+  std::optional<Pose> root;
 };
 
 struct EndEffector {

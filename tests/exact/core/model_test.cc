@@ -1,7 +1,7 @@
 #include "cguide/exact/core/model.h"
 
-#include <catch2/catch.hpp>
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 
 #include "cguide/exact/core/error.h"

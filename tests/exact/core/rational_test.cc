@@ -2,8 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
 #include <cstring>
+#include <limits>
 #include <random>
 
 #include "cguide/exact/core/error.h"
@@ -36,7 +36,8 @@ TEST_CASE("lifting a double and rounding back returns it, subnormals included") 
 TEST_CASE("directed rounding brackets a rational by neighbouring doubles") {
   std::mt19937_64 rng(2);
   for (int i = 0; i < 20'000; ++i) {
-    Rational q(mpz_class(static_cast<long>(rng() >> 1)), mpz_class(static_cast<long>((rng() >> 1) + 1)));
+    Rational q(mpz_class(static_cast<long>(rng() >> 1)),
+               mpz_class(static_cast<long>((rng() >> 1) + 1)));
     q.canonicalize();
     if (i % 5 == 0) q *= Lift(0x1p-1060);
     const double lo = RoundDown(q), hi = RoundUp(q);
@@ -70,8 +71,8 @@ TEST_CASE("text is read back as written, and decimals are read exactly") {
 }
 
 TEST_CASE("what is no rational is refused, and so is a huge exponent") {
-  for (const char* text : {"", "-", ".", "1/0", "1e", "1e99999", "0x10", "1.2.3", "nan", "1 2", "e5",
-                           "1/2/3", "--1", "1e5.5"}) {
+  for (const char* text : {"", "-", ".", "1/0", "1e", "1e99999", "0x10", "1.2.3", "nan", "1 2",
+                           "e5", "1/2/3", "--1", "1e5.5"}) {
     CAPTURE(text);
     CHECK_THROWS_AS(ParseRational(text), Error);
   }

@@ -1,0 +1,98 @@
+#include "cguide/numeric/task_stack.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cguide::numeric {
+namespace {
+
+using Eigen::VectorXd;
+
+// Below this norm a row is dependent on those above it up to rounding (rows have norms of order 1).
+constexpr double kDependent = 1e-9;
+
+// Removes the components along the basis, and once more where most of the row was cancelled: what
+// one pass leaves is of the order of rounding times the cancelled part, so twice is enough [Giraud,
+// Langou, Rozloznik 2005]. Returns the norm of what is left.
+double Orthogonalise(const std::vector<VectorXd>& basis, std::size_t size, VectorXd* row) {
+  double before = row->norm();
+  for (int pass = 0; pass < 2; ++pass) {
+    for (std::size_t i = 0; i < size; ++i) *row -= basis[i].dot(*row) * basis[i];
+    const double after = row->norm();
+    if (after > 0.5 * before) return after;
+    before = after;
+  }
+  return before;
+}
+
+// Solves in the scaled variables x = v / weight; frozen columns keep the value they have in `step`.
+void SolveOnce(std::span<const Task> tasks, double damping, TaskStackWorkspace* ws,
+               VectorXd* step) {
+  std::size_t used = 0;
+  const Eigen::Index n = step->size();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    if (!ws->frozen[j]) (*step)[j] = 0;
+  }
+  for (const Task& task : tasks) {
+    const double missing = task.rate - task.row.dot(*step);
+    ws->row = task.row.cwiseProduct(ws->weight);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      if (ws->frozen[j]) ws->row[j] = 0;
+    }
+    const double norm = Orthogonalise(ws->basis, used, &ws->row);
+    if (norm < kDependent) continue;
+    const double gain = missing / (norm * norm + damping * damping);
+    *step += gain * ws->row.cwiseProduct(ws->weight);
+    if (ws->basis.size() <= used) ws->basis.emplace_back();
+    ws->basis[used++] = ws->row / norm;
+  }
+}
+
+// Freezes the columns that leave their limits at the value that reaches the limit.
+bool FreezeColumns(const KinematicTree& tree, const Configuration& q, TaskStackWorkspace* ws,
+                   VectorXd* step) {
+  bool changed = false;
+  for (int i = 0; i < tree.num_columns; ++i) {
+    if (ws->frozen[6 + i] || !tree.limits[i].bounded) continue;
+    const double value = q.joints[i];
+    double& rate = (*step)[6 + i];
+    if (value + rate > tree.limits[i].upper) {
+      rate = std::min(0.0, tree.limits[i].upper - value);
+    } else if (value + rate < tree.limits[i].lower) {
+      rate = std::max(0.0, tree.limits[i].lower - value);
+    } else {
+      continue;
+    }
+    if (value > tree.limits[i].upper || value < tree.limits[i].lower) rate = 0;
+    ws->frozen[6 + i] = 1;
+    changed = true;
+  }
+  return changed;
+}
+
+}  // namespace
+
+VectorXd SolveTaskStack(const KinematicTree& tree, const Configuration& q,
+                        std::span<const Task> tasks, const TaskStackOptions& options,
+                        TaskStackWorkspace* workspace) {
+  const int n = tree.num_velocities();
+  workspace->weight.setOnes(n);
+  workspace->weight.head<3>().setConstant(1 / std::sqrt(options.translation_weight));
+  workspace->weight.segment<3>(3).setConstant(1 / std::sqrt(options.rotation_weight));
+  workspace->frozen.assign(n, 0);
+  VectorXd step = VectorXd::Zero(n);
+  for (int round = 0; round <= tree.num_columns; ++round) {
+    SolveOnce(tasks, options.damping, workspace, &step);
+    if (!FreezeColumns(tree, q, workspace, &step)) break;
+  }
+  double scale = 1;
+  scale = std::min(scale, options.max_translation / std::max(1e-300, step.head<3>().norm()));
+  scale = std::min(scale, options.max_rotation / std::max(1e-300, step.segment<3>(3).norm()));
+  if (tree.num_columns > 0) {
+    const double joints = step.tail(tree.num_columns).cwiseAbs().maxCoeff();
+    scale = std::min(scale, options.max_rotation / std::max(1e-300, joints));
+  }
+  return scale * step;
+}
+
+}  // namespace cguide::numeric
