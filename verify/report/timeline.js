@@ -11,8 +11,8 @@ export class Timeline {
     const values = [...frames.comMargin, ...frames.clearance].filter(Number.isFinite);
     this.top = scaleOf(values.filter((value) => value > 0));
     const below = values.filter((value) => value < 0).map((value) => -value);
-    // Room below zero where something is violated, at most as much as above it.
-    this.low = below.length ? -Math.min(this.top, scaleOf(below)) : 0;
+    // Room below zero where something is violated: enough to read its label, at most as much as above.
+    this.low = below.length ? -Math.min(this.top, Math.max(this.top / 4, scaleOf(below))) : 0;
     const seek = (event) => {
       const box = canvas.getBoundingClientRect();
       onSeek(Math.min(1, Math.max(0, (event.clientX - box.left - this.left) / (box.width - this.left - 1))));
@@ -25,7 +25,7 @@ export class Timeline {
     new ResizeObserver(() => this.paint()).observe(canvas);
   }
 
-  get left() { return 44; }
+  get left() { return 52; }
 
   setTheme(theme) {
     this.theme = theme;
@@ -79,7 +79,7 @@ export class Timeline {
       pen.lineTo(size.width, y);
       pen.stroke();
       pen.fillStyle = theme.muted;
-      const text = value === 0 ? '0' : this.top < 0.0995 ? Number((1000 * value).toPrecision(3)) + ' mm' : Number(value.toPrecision(3)) + ' m';
+      const text = value === 0 ? '0' : Math.max(this.top, -this.low) < 0.0995 ? Number((1000 * value).toPrecision(3)) + ' mm' : Number(value.toPrecision(3)) + ' m';
       pen.fillText(text, this.left - 6, y);
     }
     pen.strokeStyle = theme.line;
