@@ -30,8 +30,8 @@ export class CameraRig {
   setView(name) {
     const half = Math.tan(this.camera.fov * Math.PI / 360);
     const fit = half * Math.min(1, this.camera.aspect);
-    // A ball of that radius touches the picture's border; the timeline's side gets some air.
-    const distance = 1.06 * this.survey.radius / Math.sin(Math.atan(fit));
+    // A ball of that radius would touch the picture's border; robots are slimmer than their ball.
+    const distance = 0.97 * this.survey.radius / Math.sin(Math.atan(fit));
     const direction = VIEWS[name];
     const length = Math.hypot(...direction);
     this.controls.target.fromArray(this.survey.centre);

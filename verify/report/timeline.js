@@ -8,7 +8,11 @@ export class Timeline {
     this.theme = theme;
     this.t = 0;
     const {frames} = data;
-    this.top = scaleOf([...frames.comMargin, ...frames.clearance]);
+    const values = [...frames.comMargin, ...frames.clearance].filter(Number.isFinite);
+    this.top = scaleOf(values.filter((value) => value > 0));
+    const below = values.filter((value) => value < 0).map((value) => -value);
+    // Room below zero where something is violated: enough to read its label, at most as much as above.
+    this.low = below.length ? -Math.min(this.top, Math.max(this.top / 4, scaleOf(below))) : 0;
     const seek = (event) => {
       const box = canvas.getBoundingClientRect();
       onSeek(Math.min(1, Math.max(0, (event.clientX - box.left - this.left) / (box.width - this.left - 1))));
@@ -21,7 +25,7 @@ export class Timeline {
     new ResizeObserver(() => this.paint()).observe(canvas);
   }
 
-  get left() { return 44; }
+  get left() { return 52; }
 
   setTheme(theme) {
     this.theme = theme;
@@ -57,22 +61,25 @@ export class Timeline {
   // On whole device pixels, so that neighbours in the strip leave no seam.
   snap(x) { return Math.round(x * this.size.ratio) / this.size.ratio; }
   x(t) { return this.left + t * (this.size.width - this.left - 1); }
-  y(value) { return this.size.bottom - Math.min(1, Math.max(0, value / this.top)) * (this.size.bottom - 12); }
+  y(value) {
+    const share = (value - this.low) / (this.top - this.low);
+    return this.size.bottom - Math.min(1, Math.max(0, share)) * (this.size.bottom - 12);
+  }
 
   drawAxis(pen) {
     const {theme, size} = this;
     pen.font = '10.5px system-ui, sans-serif';
     pen.textAlign = 'right';
     pen.textBaseline = 'middle';
-    for (const value of [0, this.top / 2, this.top]) {
+    for (const value of [0, this.low < 0 ? this.low : this.top / 2, this.top]) {
       const y = Math.round(this.y(value)) + 0.5;
-      pen.strokeStyle = theme.line;
+      pen.strokeStyle = value === 0 && this.low < 0 ? theme.muted : theme.line;
       pen.beginPath();
       pen.moveTo(this.left, y);
       pen.lineTo(size.width, y);
       pen.stroke();
       pen.fillStyle = theme.muted;
-      const text = value === 0 ? '0' : value < 0.0995 ? (1000 * value).toFixed(0) + ' mm' : value.toPrecision(2) + ' m';
+      const text = value === 0 ? '0' : Math.max(this.top, -this.low) < 0.0995 ? Number((1000 * value).toPrecision(3)) + ' mm' : Number(value.toPrecision(3)) + ' m';
       pen.fillText(text, this.left - 6, y);
     }
     pen.strokeStyle = theme.line;
@@ -87,7 +94,7 @@ export class Timeline {
 
   drawCurves(pen) {
     const {frames} = this.data;
-    const {theme, size} = this;
+    const {theme} = this;
     const trace = (values, finish) => {
       let first = -1;
       for (let f = 0; f <= frames.count; ++f) {
@@ -109,8 +116,8 @@ export class Timeline {
     trace(frames.comMargin, (first, last) => {
       pen.strokeStyle = pen.fillStyle = theme.margin;
       pen.stroke();
-      pen.lineTo(this.x(frames.t[last]), size.bottom);
-      pen.lineTo(this.x(frames.t[first]), size.bottom);
+      pen.lineTo(this.x(frames.t[last]), this.y(0));
+      pen.lineTo(this.x(frames.t[first]), this.y(0));
       pen.globalAlpha = 0.2;
       pen.fill();
       pen.globalAlpha = 1;
@@ -186,9 +193,9 @@ export class Timeline {
   }
 }
 
-// The smallest round number that most of the finite values stay below.
+// The smallest round number that most of the values, all positive, stay below.
 function scaleOf(values) {
-  const sorted = values.filter((value) => Number.isFinite(value) && value > 0).sort((a, b) => a - b);
+  const sorted = values.slice().sort((a, b) => a - b);
   const goal = sorted.length ? sorted[Math.floor(0.98 * (sorted.length - 1))] : 0.1;
   const power = 10 ** Math.floor(Math.log10(goal));
   return power * [1, 2, 4, 6, 8, 10].find((k) => k * power >= goal * 0.999);

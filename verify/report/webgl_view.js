@@ -3,6 +3,7 @@ import * as THREE from 'three';
 
 import {BalanceMarks} from './balance.js';
 import {CameraRig} from './camera.js';
+import {addNotice} from './notice.js';
 import {RobotModel} from './robot.js';
 import {SceneModel} from './scene.js';
 
@@ -36,6 +37,7 @@ export class WebglView {
     this.rig.camera.add(this.model.lamp, this.model.lamp.target);
     this.overlay = new THREE.Scene();
     this.overlay.add(this.model.occluders, this.marks.overlay);
+    if (this.model.grids.length > 0) addNotice(stage, 'Grid: 0.1 m, 1 m');
     this.onDrawn = () => {};
     this.resize();
     new ResizeObserver(() => this.resize()).observe(stage);
