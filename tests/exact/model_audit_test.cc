@@ -1,8 +1,14 @@
 // The exact twins on whole problems, against the enclosures of the numeric module.
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <random>
+#include <regex>
 #include <string>
 
 #include "cguide/exact/body_distance.h"
@@ -67,9 +73,28 @@ void CompareKinematics(const numeric::World& world, const numeric::KinematicStat
   }
 }
 
+std::filesystem::path SharedData() {
+  const char* variable = std::getenv("CGUIDE_SHARED_DATA");
+  return variable ? variable : CGUIDE_SOURCE_DIR "/../shared";
+}
+
+/** Reads a fixture whose paths to third-party data are led to where that is. */
+numeric::Problem ReadFixture(const std::string& name) {
+  const std::filesystem::path fixtures(CGUIDE_FIXTURES);
+  std::ifstream file(fixtures / "problems" / (name + ".yaml"));
+  std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  text = std::regex_replace(text, std::regex(R"(\.\./\.\./\.\./shared)"), SharedData().string());
+  text = std::regex_replace(text, std::regex(R"(\.\./robots)"), (fixtures / "robots").string());
+  const auto copy = std::filesystem::temp_directory_path() /
+                    ("cguide_" + name + "_" + std::to_string(getpid()) + ".yaml");
+  std::ofstream(copy) << text;
+  const numeric::Problem problem = numeric::io::ReadProblem(copy);
+  std::filesystem::remove(copy);
+  return problem;
+}
+
 Counts Audit(const std::string& name, int rounds) {
-  const numeric::Problem problem = numeric::io::ReadProblem(std::filesystem::path(CGUIDE_FIXTURES) /
-                                                            "problems" / (name + ".yaml"));
+  const numeric::Problem problem = ReadFixture(name);
   const numeric::World world(problem.model);
   numeric::Workspace workspace(world);
   const PreparedModel prepared = PrepareModel(world.model(), {.cylinder_sides = 32});
@@ -97,6 +122,18 @@ TEST_CASE("Exact and numeric answers about the chair and table enclose the same 
 
 TEST_CASE("Exact and numeric answers about the sofa and the tunnel enclose the same distances") {
   for (const char* name : {"sofa", "tunnel_100"}) {
+    CAPTURE(name);
+    const Counts counts = Audit(name, 2);
+    CHECK(counts.apart > counts.pairs / 2);
+  }
+}
+
+TEST_CASE("Exact and numeric answers about robots made of meshes enclose the same distances") {
+  if (!std::filesystem::exists(SharedData() / "robots")) {
+    WARN("skipped: no third-party robots at " << SharedData());
+    return;
+  }
+  for (const char* name : {"talos_chair_and_table", "jvrc1_chair_and_table", "hyq_floor"}) {
     CAPTURE(name);
     const Counts counts = Audit(name, 2);
     CHECK(counts.apart > counts.pairs / 2);
