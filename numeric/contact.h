@@ -17,6 +17,10 @@ struct Contact {
   double friction = 0;  ///< mu: of the object owning y, the smallest where several do
   /** Bounds on the error of x_W, y_W and distance against the real configuration (m). */
   double error = 0;
+  /** Bound on |n_W - the real normal|. Negative where none is known apart from `error`: n_W is then
+   the signed direction of x - y up to 16 roundings, and NormalError derives a bound, which grows
+   without limit as x and y meet. Who knows the normal otherwise (a face's) should say so here. */
+  double normal_error = -1;
   /** Whether the contact is active for certain; otherwise it only may be (its distance is within
    `error` of the band's end, or its local-closest test is within rounding). */
   bool certain = true;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,21 +17,33 @@ struct StabilityQuery {
   std::span<const Contact> contacts;
   Eigen::Vector3d com_W = Eigen::Vector3d::Zero();
   double com_error = 0;  ///< bound on the error of com_W (m)
-  double mass = 0;       ///< kg
+  double mass = 0;       ///< kg, > 0; scales the forces and has no influence on the verdict
   Eigen::Vector3d gravity_W{0, 0, -9.81};
-  int generators = 4;  ///< sides of the inscribed pyramids that are tried
+  int generators = 4;  ///< sides of the pyramids of the margins; TryStability uses the round cones
 };
 
-/** Balance found in floats: weights on 6 generators, and the margin by which the proof went
- * through. */
+/** One contact force of a balance. */
+struct WitnessForce {
+  int contact = -1;                               ///< index into the query's contacts
+  Eigen::Vector3d u_W = Eigen::Vector3d::Zero();  ///< direction (not unit), u.n = 1 up to rounding
+  double weight = 0;                              ///< N per unit of u, > 0
+};
+
+/** Balance found in floats: sum weight u = -m g and sum weight (p - c) x u = 0 up to rounding. The
+ first six generators span the space of wrenches, and their weights stay positive when the residual
+ is made exactly zero by them. Each u lies in the real friction cone whatever the contact's error,
+ except where mu is too small for its error (or zero): there u = n_W stands for the real normal. */
 struct ForceWitness {
-  std::vector<int> contact;          ///< per generator: index into the query's contacts
-  std::vector<Eigen::Vector3d> u_W;  ///< generator direction (not unit), admissible
-  std::vector<double> weight;        ///< > 0
+  static constexpr int kCapacity = 12;
+  std::array<WitnessForce, kCapacity> force;
+  int size = 0;
+  const WitnessForce* begin() const { return force.data(); }
+  const WitnessForce* end() const { return force.data() + size; }
 };
 
-/** A wrench direction y with y.(u, p x u) <= 0 for every admissible u of every contact that may be
- active, and y.v > 0, moments about the centre of mass. */
+/** A wrench direction y = (y_f, y_m) with y_f.u + y_m.((p - c) x u) <= 0 for every admissible u of
+ every contact that may be active, and y.v > 0 for v = (-m g, 0): moments about the centre of mass,
+ in W. */
 struct SeparatingWrench {
   Eigen::Matrix<double, 6, 1> y = Eigen::Matrix<double, 6, 1>::Zero();
 };
@@ -38,19 +52,34 @@ struct StabilityAnswer {
   Verdict verdict = Verdict::kUndecided;
   ForceWitness forces;         ///< filled where kHolds
   SeparatingWrench separator;  ///< filled where kFails
+  int pivots = 0;              ///< of the simplex, its six starting ones included
 };
 
-/** Per-thread scratch; keeps the last bases and separators as first guesses. */
-struct StabilityWorkspace {
-  std::vector<Eigen::Matrix<double, 6, 1>> columns;
-  std::vector<int> last_basis;
-  SeparatingWrench last_separator;
+/** Scratch of one thread: buffers only. Nothing learnt from one query is used in the next, so that
+ an answer is a function of its query, whatever the number of threads. */
+class StabilityWorkspace {
+ public:
+  StabilityWorkspace();
+  ~StabilityWorkspace();
+  StabilityWorkspace(StabilityWorkspace&&) noexcept;
+  StabilityWorkspace& operator=(StabilityWorkspace&&) noexcept;
+
+  struct Scratch;  // numeric/stability_contacts_internal.h
+  std::unique_ptr<Scratch> scratch;
 };
 
 /** Decides in doubles with a proven bound, or declines (kUndecided).
- kHolds: the wrench is interior to the true cone for every configuration within the stated errors,
- using certain contacts only. kFails: it is outside the true revolution cones of all contacts that
- may be active. Proofs above the functions in stability.cc. */
+
+ kHolds: for every configuration within the stated errors, -(m g, c x m g) is in the interior of the
+ wrench cone of the true revolution cones of the certain contacts. kFails: for every such
+ configuration it is outside the closed wrench cone of all contacts, those that only may be active
+ included. Proofs above the functions in stability_certificates.cc.
+ Exact ties, a wrench cone of rank < 6 that contains the wrench, and anything nearer to a tie than
+ the errors allow are declined. Not finite, or without mass or gravity: declined. Allocates only
+ while the workspace grows. */
 StabilityAnswer TryStability(const StabilityQuery& query, StabilityWorkspace* workspace);
+
+/** Bound on |n_W - the real normal| of a contact; infinite where its errors allow any normal. */
+double NormalError(const Contact& contact);
 
 }  // namespace cguide::numeric

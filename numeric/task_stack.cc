@@ -11,12 +11,18 @@ using Eigen::VectorXd;
 // Below this norm a row is dependent on those above it up to rounding (rows have norms of order 1).
 constexpr double kDependent = 1e-9;
 
-// Removes the components along the basis twice: once leaves errors of the order of the cancelled
-// part, a second time of the order of rounding [Giraud, Langou, Rozloznik 2005].
-void Orthogonalise(const std::vector<VectorXd>& basis, std::size_t size, VectorXd* row) {
+// Removes the components along the basis, and once more where most of the row was cancelled: what
+// one pass leaves is of the order of rounding times the cancelled part, so twice is enough [Giraud,
+// Langou, Rozloznik 2005]. Returns the norm of what is left.
+double Orthogonalise(const std::vector<VectorXd>& basis, std::size_t size, VectorXd* row) {
+  double before = row->norm();
   for (int pass = 0; pass < 2; ++pass) {
     for (std::size_t i = 0; i < size; ++i) *row -= basis[i].dot(*row) * basis[i];
+    const double after = row->norm();
+    if (after > 0.5 * before) return after;
+    before = after;
   }
+  return before;
 }
 
 // Solves in the scaled variables x = v / weight; frozen columns keep the value they have in `step`.
@@ -33,8 +39,7 @@ void SolveOnce(std::span<const Task> tasks, double damping, TaskStackWorkspace* 
     for (Eigen::Index j = 0; j < n; ++j) {
       if (ws->frozen[j]) ws->row[j] = 0;
     }
-    Orthogonalise(ws->basis, used, &ws->row);
-    const double norm = ws->row.norm();
+    const double norm = Orthogonalise(ws->basis, used, &ws->row);
     if (norm < kDependent) continue;
     const double gain = missing / (norm * norm + damping * damping);
     *step += gain * ws->row.cwiseProduct(ws->weight);

@@ -102,10 +102,16 @@ struct Approach {
   double distance = 0;                             ///< |x - y| - radius (m); negative inside
 };
 
-/** The nearest approach of each site of each body that may carry contacts, within `cutoff`, ordered
- by (distance, site). At most `per_body` of each body, those the nearest. Plain floats, no bounds:
- it proposes, it does not decide. */
-void FindApproaches(const World& world, double cutoff, int per_body, Workspace* workspace,
+struct ApproachOptions {
+  double cutoff = 0.6;  ///< approaches farther than this are of no interest (m)
+  int per_body = 4;     ///< of each body only its nearest sites
+  int count = 16;       ///< the search may stop when it has this many
+};
+
+/** The nearest approach of each site of each body that may carry contacts, ordered by (distance,
+ site). At least the `count` nearest ones that cutoff and per_body allow are listed; more may be.
+ Plain floats, no bounds: it proposes, it does not decide. */
+void FindApproaches(const World& world, const ApproachOptions& options, Workspace* workspace,
                     std::vector<Approach>* approaches);
 
 }  // namespace cguide::numeric

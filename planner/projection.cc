@@ -1,5 +1,6 @@
 #include "cguide/planner/projection.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace cguide::planner {
@@ -113,13 +114,14 @@ ProjectionResult Project(const World& world, const Configuration& sample,
     }
     result.stop = StopFor(membership);
     if (result.iterations == options.max_iterations) return result;
-    numeric::FindApproaches(world, options.search_distance, options.sites_per_body,
-                            &ws->guide.geometry, &ws->approaches);
+    ++pushed;
+    numeric::FindApproaches(
+        world, {options.search_distance, options.sites_per_body, static_cast<int>(pushed)},
+        &ws->guide.geometry, &ws->approaches);
     if (ws->approaches.empty()) {
       result.stop = ProjectionStop::kNothingNear;
       return result;
     }
-    ++pushed;
     const std::size_t in_band = CountInBand(ws->approaches, world.model().contact.epsilon);
     const std::size_t in_stack = std::min(ws->approaches.size(), std::max(pushed, in_band));
     const std::size_t count = BuildTasks(world, options, in_stack, ws);

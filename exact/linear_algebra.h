@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "cguide/exact/core/error.h"
+#include "cguide/exact/core/pose.h"
+#include "cguide/exact/core/rational.h"
+
+namespace cguide::exact {
+
+/** Textbook linear algebra over Q. Eigen is a container here; nothing is ever rounded. */
+template <typename A, typename B>
+Rational Dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+  Require(a.size() == b.size(), "vectors of different sizes have no inner product");
+  Rational sum = 0;
+  for (Eigen::Index i = 0; i < a.size(); ++i) sum += Rational(a(i)) * Rational(b(i));
+  return sum;
+}
+Vector3q Cross(const Vector3q& a, const Vector3q& b);
+Rational SquaredNorm(const Vector3q& a);
+Vector3q Scaled(const Rational& s, const Vector3q& a);
+Vector3q Transformed(const Matrix3q& R, const Vector3q& a);
+Matrix3q Product(const Matrix3q& a, const Matrix3q& b);
+bool IsZero(const VectorXq& a);
+
+/** The exactly rigid R = M(q)/|q|^2. @throws Error where q is zero or not finite. */
+Matrix3q RotationOf(const Quaternion& q);
+
+/** Dimension of the span. All vectors have the same size. */
+int Rank(const std::vector<VectorXq>& vectors);
+
+/** The positive multiple of v whose entries are coprime integers; zero stays zero. */
+VectorXq Primitive(const VectorXq& v);
+
+/** The least positive integer that makes every entry of s v an integer. */
+mpz_class CommonDenominator(const VectorXq& v);
+
+/** A rational (dyadic) number >= sqrt(x), within 2^-50 relative of it; x >= 0. Likewise below. */
+Rational SqrtUp(const Rational& x);
+Rational SqrtDown(const Rational& x);
+
+}  // namespace cguide::exact

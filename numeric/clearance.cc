@@ -1,0 +1,216 @@
+#include <algorithm>
+
+#include "cguide/numeric/clearance_internal.h"
+#include "cguide/numeric/fcl_distance_internal.h"
+#include "cguide/numeric/gjk_internal.h"
+
+namespace cguide::numeric {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kWide = 1e-9;  // Enclosures wider than this ask FCL for a second opinion (m).
+
+// Raises lo where the direction is better than the best so far.
+void TryDirection(const Convex& a, const Convex& b, const Vector3d& n, DirectedClearance* result) {
+  const double lo = Gap(a, b, n) - a.error - b.error;
+  if (lo > result->lo) {
+    result->lo = lo;
+    result->n_W = n;
+  }
+}
+
+// Lowers hi where the points, each proven in its set, are nearer.
+void TryPoints(const Convex& a, const Convex& b, const Vector3d& p, const Vector3d& q,
+               DirectedClearance* result) {
+  const double hi = (p - q).norm() * (1 + 4 * kUnit) + a.error + b.error;
+  if (hi < result->hi) {
+    result->hi = hi;
+    result->a_W = p;
+    result->b_W = q;
+  }
+}
+
+// FCL's points are pulled into the sets before they count.
+void AskFcl(const Convex& a, const Convex& b, DirectedClearance* result, StageCounts* counts) {
+  ++counts->library;
+  const auto points = FclNearestPoints(a, b);
+  if (!points) return;
+  const Vector3d d = points->a - points->b;
+  const double length = d.norm();
+  if (length > 0) TryDirection(a, b, d / length, result);
+  Vector3d p = points->a, q = points->b;
+  if (ClampInto(a, 0, &p) && ClampInto(b, 0, &q)) TryPoints(a, b, p, q, result);
+}
+
+// Penetration depth along the axes at hand, an estimate from above.
+void EstimateDepth(const Convex& a, const Convex& b, const GjkResult& gjk,
+                   DirectedClearance* result) {
+  const BoxAxis axis = BestBoxAxis(a, b);
+  SeparationHint hint;
+  hint.code = static_cast<signed char>(axis.code);
+  result->n_W = HintDirection(a, b, hint);
+  result->depth = -Gap(a, b, result->n_W);
+  const double length = gjk.v.norm();
+  if (!gjk.overlap && length > 0) {
+    const Vector3d n = gjk.v / length;
+    const double depth = -Gap(a, b, n);
+    if (depth < result->depth) {
+      result->depth = depth;
+      result->n_W = n;
+    }
+  }
+  result->depth = std::max(0.0, result->depth);
+}
+
+void SetOverlap(DirectedClearance* result) {
+  result->overlap = true;
+  result->lo = result->hi = 0;
+}
+
+DirectedClearance Overlapping(const Convex& a, const Convex& b, const GjkResult& gjk) {
+  DirectedClearance result;
+  const double error = a.error + b.error;
+  result.a_W = a.c + gjk.a;
+  result.b_W = b.c + gjk.b;
+  EstimateDepth(a, b, gjk, &result);
+  const bool balls_meet = !gjk.overlap && gjk.v.norm() + error < a.radius + b.radius;
+  if (balls_meet || ProveTetrahedron(gjk, error) || ProveCommonPoint(a, b, 0) ||
+      ProveOctahedron(a, b, error)) {
+    SetOverlap(&result);
+    return result;
+  }
+  // Touching as far as doubles can tell: the witnesses bound the distance from above. A simplex of
+  // four points holds the origin up to rounding, where a and b were never formed.
+  const double bound = gjk.overlap && gjk.size == 4 ? 0 : (result.a_W - result.b_W).norm();
+  result.lo = 0;
+  result.hi = std::max(0.0, bound - a.radius - b.radius) + 4 * error;
+  return result;
+}
+
+void Absorb(const DirectedClearance& one, DirectedClearance* all) {
+  if (all->overlap && (!one.overlap || one.depth <= all->depth)) return;
+  const double lo = std::min(all->lo, one.lo);
+  if (one.overlap || one.hi < all->hi) *all = one;
+  all->lo = lo;
+}
+
+DirectedClearance Nothing() {
+  DirectedClearance result;
+  result.lo = result.hi = INFINITY;
+  return result;
+}
+
+}  // namespace
+
+DirectedClearance ConvexClearance(const Convex& a, const Convex& b, double cutoff,
+                                  StageCounts* counts) {
+  const double error = a.error + b.error;
+  const Vector3d D = a.c - b.c;
+  DirectedClearance result;
+  result.lo = D.norm() * (1 - 4 * kUnit) - a.reach - b.reach - error;
+  result.hi = INFINITY;
+  if (result.lo >= cutoff) return result;
+  result.lo = 0;
+  GjkResult gjk;
+  Gjk(a, b, D, INFINITY, &gjk);
+  const double length = gjk.v.norm();
+  if (gjk.overlap || length - error <= a.radius + b.radius) return Overlapping(a, b, gjk);
+  const Vector3d n = gjk.v / length;
+  TryPoints(a, b, a.c + gjk.a - a.radius * n, b.c + gjk.b + b.radius * n, &result);
+  TryDirection(a, b, n, &result);
+  if (result.hi - result.lo > 4 * error) {
+    for (int code = 0; code < 6; ++code) {
+      TryDirection(a, b, HintDirection(a, b, {static_cast<signed char>(code), Vector3d::Zero()}),
+                   &result);
+    }
+    const BoxAxis axis = BestBoxAxis(a, b);
+    TryDirection(a, b, HintDirection(a, b, {static_cast<signed char>(axis.code), Vector3d::Zero()}),
+                 &result);
+  }
+  if (result.hi - result.lo > kWide) AskFcl(a, b, &result, counts);
+  return result;
+}
+
+DirectedClearance HalfspaceClearance(const Convex& shape, const ObstaclePiece& piece) {
+  DirectedClearance result;
+  const double error = shape.error + HalfspaceError(piece, shape.c.lpNorm<1>() + shape.reach);
+  const double lowest = LowestAlong(shape, piece.normal) - piece.offset;
+  result.n_W = piece.normal;
+  result.a_W = shape.c + CoreSupport(shape, -piece.normal) - shape.radius * piece.normal;
+  result.b_W = result.a_W - std::max(0.0, lowest) * piece.normal;
+  result.lo = std::max(0.0, lowest - error);
+  result.hi = std::max(0.0, lowest + error);
+  if (lowest < -error) {
+    SetOverlap(&result);
+    result.depth = -lowest;
+  }
+  return result;
+}
+
+DirectedClearance MeshClearance(const Convex& shape, const Mesh& mesh, double cutoff,
+                                StageCounts* counts) {
+  DirectedClearance all = Nothing();
+  all.lo = cutoff;
+  const double slack = shape.reach + shape.error;
+  const auto radius = [&] { return all.overlap ? -INFINITY : slack + std::min(cutoff, all.hi); };
+  VisitByDistance(mesh, shape.c, radius, [&](int t) {
+    std::array<Vector3d, 3> corners;
+    Absorb(
+        ConvexClearance(shape, TriangleConvex(mesh, t, &corners), std::min(cutoff, all.hi), counts),
+        &all);
+  });
+  if (all.overlap || !mesh.solid) return all;
+  const Vector3d x = InnerPoint(shape);
+  const auto winding = all.lo > 0 ? WindingNumber(mesh, x) : std::nullopt;
+  if (winding && *winding == 0) return all;
+  if (!winding) {
+    all.lo = 0;
+    return all;
+  }
+  all.a_W = all.b_W = x;
+  all.depth = 2 * shape.reach;
+  SetOverlap(&all);
+  return all;
+}
+
+DirectedClearance BodyClearance(const World& world, const Pair& pair, double cutoff,
+                                Workspace* workspace) {
+  const Geometry& g = world.geometry();
+  Workspace::Scratch& scratch = *workspace->scratch;
+  DirectedClearance all = Nothing();
+  for (int s = g.body_begin[pair.body]; s < g.body_begin[pair.body + 1]; ++s) {
+    const Convex& shape = scratch.shapes[s];
+    const double reach = std::min(cutoff, all.hi);
+    if (pair.self) {
+      for (int t = g.body_begin[pair.other]; t < g.body_begin[pair.other + 1]; ++t) {
+        Absorb(ConvexClearance(shape, scratch.shapes[t], std::min(cutoff, all.hi), &scratch.counts),
+               &all);
+      }
+      continue;
+    }
+    for (int p = g.object_begin[pair.other]; p < g.object_begin[pair.other + 1]; ++p) {
+      const ObstaclePiece& piece = g.pieces[p];
+      if (piece.kind == PieceKind::kHalfspace) {
+        Absorb(HalfspaceClearance(shape, piece), &all);
+      } else if (BallApart(shape.c, shape.reach + shape.error + reach, piece)) {
+        DirectedClearance far = Nothing();
+        far.lo = reach;
+        Absorb(far, &all);
+      } else if (piece.kind == PieceKind::kMesh) {
+        Absorb(MeshClearance(shape, *piece.mesh, reach, &scratch.counts), &all);
+      } else {
+        Absorb(ConvexClearance(shape, piece.convex, reach, &scratch.counts), &all);
+      }
+    }
+  }
+  return all;
+}
+
+Clearance PairClearance(const World& world, const Pair& pair, double cutoff, Workspace* workspace) {
+  Clearance result = BodyClearance(world, pair, cutoff, workspace);
+  result.lo = std::min(result.lo, result.hi);
+  return result;
+}
+
+}  // namespace cguide::numeric

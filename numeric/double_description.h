@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "cguide/numeric/friction.h"
+
+namespace cguide::numeric {
+
+/** { x : h.x <= 0 for every facet h, e.x = 0 for every equation e } in the space of wrenches. */
+struct ConeFacets {
+  std::vector<Vector6d> facets;     ///< unit outward normals, one a facet
+  std::vector<Vector6d> equations;  ///< orthonormal; 6 - rank of them
+};
+
+struct DualOptions {
+  /** A product h.a counts as zero below this, for unit h and a. */
+  double tolerance = 1e-9;
+};
+
+/** The facets of the cone of the generators, by the double description method: the extreme rays of
+ the polar cone { h : h.a <= 0 } are kept minimal while its half-spaces are added one by one, new
+ rays arising between adjacent rays on either side [Motzkin, Raiffa, Thompson and Thrall 1953;
+ minimal generators as in Padberg 1999, ch. 7]. The adjacency graph is kept, so that only rays on
+ the new hyperplane are compared. Half-spaces are added in a fixed pseudo-random order.
+
+ The whole space gives neither facets nor equations; a cone of rank k < 6 gives 6 - k equations.
+ Zero and repeated generators are allowed. Floating point with a tolerance: the result carries NO
+ proof, a facet may be missing or spurious where generators are nearly coplanar. exact::FacetsOf is
+ the reference; use TryStability or numeric::Stability for verdicts that must be right. */
+ConeFacets DualDescription(std::span<const Vector6d> generators, const DualOptions& options = {});
+
+/** The paper's verdict by dual facets, as a number: max over facets of h.v and over equations of
+ |e.v|, in the units of v. Negative: inside, by that distance; -infinity for the whole space. Not a
+ proof. */
+double FacetExcess(const ConeFacets& cone, const Vector6d& v);
+
+}  // namespace cguide::numeric

@@ -1,0 +1,144 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "cguide/numeric/gjk_internal.h"
+
+namespace cguide::numeric {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kMaxIterations = 96;
+
+// A face of the simplex that may hold its closest point to the origin: members and weights.
+struct Candidate {
+  double squared = INFINITY;
+  int size = 0;
+  int index[4] = {0, 0, 0, 0};
+  double weight[4] = {0, 0, 0, 0};
+};
+
+Vector3d Combine(const DifferencePoint* s, const Candidate& c) {
+  Vector3d v = Vector3d::Zero();
+  for (int i = 0; i < c.size; ++i) v += c.weight[i] * s[c.index[i]].w;
+  return v;
+}
+
+void Offer(const DifferencePoint* s, Candidate c, Candidate* best) {
+  c.squared = Combine(s, c).squaredNorm();
+  if (c.squared < best->squared) *best = c;
+}
+
+void OfferVertex(const DifferencePoint* s, int i, Candidate* best) {
+  Offer(s, {0, 1, {i, 0, 0, 0}, {1, 0, 0, 0}}, best);
+}
+
+void OfferEdge(const DifferencePoint* s, int i, int j, Candidate* best) {
+  const Vector3d e = s[j].w - s[i].w;
+  const double along = -e.dot(s[i].w), length = e.squaredNorm();
+  if (!(along > 0) || !(along < length)) return;
+  const double t = along / length;
+  Offer(s, {0, 2, {i, j, 0, 0}, {1 - t, t, 0, 0}}, best);
+}
+
+// The origin's barycentric coordinates in the triangle's plane, each computed by the edge normal
+// form, offered where all are positive.
+void OfferTriangle(const DifferencePoint* s, int i, int j, int k, Candidate* best) {
+  const Vector3d &a = s[i].w, &b = s[j].w, &c = s[k].w;
+  const Vector3d n = (b - a).cross(c - a);
+  const double wa = n.dot(b.cross(c)), wb = n.dot(c.cross(a)), wc = n.dot(a.cross(b));
+  if (!(wa > 0) || !(wb > 0) || !(wc > 0)) return;
+  const double sum = wa + wb + wc;
+  Offer(s, {0, 3, {i, j, k, 0}, {wa / sum, wb / sum, wc / sum, 0}}, best);
+}
+
+// Whether the origin is inside the tetrahedron in plain floats, flat ones never.
+bool InsideTetrahedron(const DifferencePoint* s) {
+  const Vector3d a = s[1].w - s[0].w, b = s[2].w - s[0].w, c = s[3].w - s[0].w;
+  const double volume = a.dot(b.cross(c));
+  const double scale = a.norm() * b.norm() * c.norm();
+  if (!(std::abs(volume) > 1e-13 * scale)) return false;
+  const double sign = volume < 0 ? -1 : 1;
+  const Vector3d &p = s[0].w, &q = s[1].w, &r = s[2].w, &t = s[3].w;
+  return sign * q.dot(r.cross(t)) >= 0 && sign * p.dot(t.cross(r)) >= 0 &&
+         sign * p.dot(q.cross(t)) >= 0 && sign * p.dot(r.cross(q)) >= 0;
+}
+
+// The best of all faces: every vertex, edge and triangle is tried, which costs little and needs no
+// assumption about where the origin can be, so a flat simplex does no harm.
+Candidate ClosestFace(const DifferencePoint* s, int n) {
+  Candidate best;
+  for (int i = 0; i < n; ++i) OfferVertex(s, i, &best);
+  for (int i = 0; i < n; ++i) {
+    for (int j = i + 1; j < n; ++j) OfferEdge(s, i, j, &best);
+  }
+  for (int i = 0; i < n; ++i) {
+    for (int j = i + 1; j < n; ++j) {
+      for (int k = j + 1; k < n; ++k) OfferTriangle(s, i, j, k, &best);
+    }
+  }
+  return best;
+}
+
+bool Repeated(const GjkResult& r, const DifferencePoint& p) {
+  for (int i = 0; i < r.size; ++i) {
+    if (r.simplex[i].w == p.w) return true;
+  }
+  return false;
+}
+
+void Reduce(const Candidate& c, GjkResult* r) {
+  DifferencePoint kept[4];
+  r->v.setZero();
+  r->a.setZero();
+  r->b.setZero();
+  for (int i = 0; i < c.size; ++i) {
+    kept[i] = r->simplex[c.index[i]];
+    r->v += c.weight[i] * kept[i].w;
+    r->a += c.weight[i] * kept[i].a;
+    r->b += c.weight[i] * kept[i].b;
+  }
+  r->size = c.size;
+  std::copy(kept, kept + c.size, r->simplex);
+}
+
+}  // namespace
+
+void Gjk(const Convex& a, const Convex& b, const Vector3d& v0, double enough, GjkResult* r) {
+  const Vector3d offset = a.c - b.c;
+  const double tiny = 4 * kUnit * (offset.norm() + a.reach + b.reach);
+  r->v = v0.squaredNorm() > 0 ? v0 : Vector3d::UnitX();
+  r->size = 0;
+  double best = INFINITY;
+  for (r->iterations = 0; r->iterations < kMaxIterations; ++r->iterations) {
+    DifferencePoint p;
+    p.a = CoreSupport(a, -r->v);
+    p.b = CoreSupport(b, r->v);
+    p.w = offset + p.a - p.b;
+    const double bound = r->v.dot(p.w), squared = r->v.squaredNorm();
+    if (bound > 0 && bound * bound > enough * enough * squared) {
+      r->separated = true;
+      return;
+    }
+    // v.w = |v|^2 says that no point of A - B is nearer; v0 is no point of A - B, so not at first.
+    if (r->size > 0 && (squared - bound <= 2 * kUnit * squared || Repeated(*r, p))) return;
+    r->simplex[r->size++] = p;
+    if (r->size == 4 && InsideTetrahedron(r->simplex)) {
+      r->overlap = true;
+      return;
+    }
+    const Candidate face = ClosestFace(r->simplex, r->size);
+    if (r->iterations > 0 && face.squared >= best) {
+      r->size -= 1;  // No progress: rounding rules from here. v still belongs to the old simplex.
+      return;
+    }
+    best = face.squared;
+    Reduce(face, r);
+    if (best <= tiny * tiny) {
+      r->overlap = true;
+      return;
+    }
+  }
+}
+
+}  // namespace cguide::numeric

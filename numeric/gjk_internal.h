@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "cguide/numeric/convex_internal.h"
+
+namespace cguide::numeric {
+
+/** Points of two cores and their difference. */
+struct DifferencePoint {
+  Eigen::Vector3d w;  ///< (c_A + a) - (c_B + b)
+  Eigen::Vector3d a;  ///< of core A, relative to c_A
+  Eigen::Vector3d b;  ///< of core B, relative to c_B
+};
+
+/** What the iteration of Gilbert, Johnson and Keerthi [1988] proposes for the cores of two sets.
+ Nothing here is certified: `v` becomes evidence through SeparationBound, the points through
+ WitnessBound. */
+struct GjkResult {
+  Eigen::Vector3d v = Eigen::Vector3d::UnitX();  ///< near-closest point of A - B to 0, from B to A
+  Eigen::Vector3d a = Eigen::Vector3d::Zero();   ///< its points, relative to c_A and c_B
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  bool overlap = false;    ///< the last simplex holds the origin up to rounding
+  bool separated = false;  ///< stopped early: the bound asked for was reached along `v`
+  int size = 0;            ///< of the simplex
+  DifferencePoint simplex[4];
+  int iterations = 0;
+};
+
+/** Runs until the distance of the cores is known to rounding, the cores overlap, or (v.w)/|v|, the
+ lower bound of the core distance, exceeds `enough`. `v0` is a first guess of the direction. */
+void Gjk(const Convex& a, const Convex& b, const Eigen::Vector3d& v0, double enough,
+         GjkResult* result);
+
+}  // namespace cguide::numeric

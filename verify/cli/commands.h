@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace cguide::cli {
+
+/** Exit codes (DESIGN part 4). */
+enum ExitCode {
+  kExitOk = 0,
+  kExitRefuted = 1,
+  kExitUsage = 2,
+  kExitBadInput = 3,
+  kExitUndecided = 4,
+  kExitInternal = 70,
+  kExitInterrupted = 130
+};
+
+/** What every command takes. */
+struct CommonArguments {
+  bool quiet = false;  ///< no talk on stderr but errors
+  int threads = 0;     ///< 0: all that the machine has
+};
+
+struct PlanArguments {
+  CommonArguments common;
+  std::string problem;
+  std::string output;
+  std::string planner = "rrt";  ///< rrt, prm
+  std::string space = "guide";  ///< guide, free
+  std::uint64_t seed = 1;
+  double time_limit_s = 300;
+  long iteration_limit = 10'000'000;
+  double edge_step = 0.02;
+  double extension = 0;  ///< 0: the planner's default
+  int shortcut_rounds = 120;
+  std::string stats;  ///< file for times and counters, or empty
+};
+
+struct AuditArguments {
+  CommonArguments common;
+  std::string path;             ///< guide JSON, or CSV together with `problem`
+  std::string problem;          ///< overrides the one the guide names
+  double dense_step = 0;        ///< 0: none given
+  std::string format = "text";  ///< text, json
+  std::string output;           ///< file, or empty for stdout
+};
+
+struct StabilityArguments {
+  CommonArguments common;
+  std::string problem;
+  std::string posture;  ///< "start", "goal" or a posture's name at the start's root pose
+  std::string guide;
+  double at = -1;  ///< edge index + s along the guide
+  std::string format = "text";
+};
+
+struct ModelArguments {
+  CommonArguments common;
+  std::string problem;
+  std::string output;  ///< file, or empty for stdout
+};
+
+struct DoctorArguments {
+  CommonArguments common;
+  std::string problem;  ///< empty: the machine alone
+};
+
+struct ViewArguments {
+  CommonArguments common;
+  std::string guide;
+  std::string problem;
+  std::string output;
+  int frames = 0;  ///< 0: chosen from the guide's length
+};
+
+/** Each runs one command and returns its exit code; errors leave as cguide::Error. */
+int RunPlan(const PlanArguments& arguments);
+int RunAudit(const AuditArguments& arguments);
+int RunStability(const StabilityArguments& arguments);
+int RunModel(const ModelArguments& arguments);
+int RunDoctor(const DoctorArguments& arguments);
+int RunView(const ViewArguments& arguments);
+
+}  // namespace cguide::cli

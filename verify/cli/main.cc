@@ -1,0 +1,170 @@
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <iostream>
+
+#include "cguide/exact/core/error.h"
+#include "cguide/verify/cli/commands.h"
+#include "cguide/verify/cli/console.h"
+#include "cguide/verify/cli/version.h"
+
+namespace cguide::cli {
+namespace {
+
+void AddCommon(CLI::App* command, CommonArguments* common) {
+  command->add_flag("-q,--quiet", common->quiet, "No talk on stderr, errors only");
+  command
+      ->add_option("--threads", common->threads, "Threads to use; the result does not depend on it")
+      ->check(CLI::Range(1, 1024));
+}
+
+CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
+  CLI::App* c = app.add_subcommand("plan", "Plan a guide for a problem");
+  c->add_option("problem", a->problem, "Problem file (YAML)")->required();
+  c->add_option("-o,--output", a->output, "Guide file to write (JSON)")->required();
+  c->add_option("--planner", a->planner, "rrt: two trees; prm: roadmap")
+      ->check(CLI::IsMember({"rrt", "prm"}))
+      ->capture_default_str();
+  c->add_option("--space", a->space, "guide: near contact and balanced; free: collision-free only")
+      ->check(CLI::IsMember({"guide", "free"}))
+      ->capture_default_str();
+  c->add_option("--seed", a->seed, "Seed of all random choices")->capture_default_str();
+  c->add_option("--time-limit", a->time_limit_s, "Give up after this many seconds")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  c->add_option("--iteration-limit", a->iteration_limit, "Give up after this many iterations")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  c->add_option("--edge-step", a->edge_step, "Distance between the samples that test an edge")
+      ->check(CLI::Range(1e-4, 1.0))
+      ->capture_default_str();
+  c->add_option("--extension", a->extension, "Length of an extension of a tree")
+      ->check(CLI::Range(0.01, 10.0));
+  c->add_option("--shortcuts", a->shortcut_rounds, "Rounds of shortcutting")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  c->add_option("--stats", a->stats, "File for times and counters (JSON)");
+  AddCommon(c, &a->common);
+  return c;
+}
+
+CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
+  CLI::App* c =
+      app.add_subcommand("audit", "Say whether a guide or a foreign path stays in C_guide");
+  c->add_option("path", a->path, "Guide (JSON), or path (CSV) with --problem")->required();
+  c->add_option("--problem", a->problem, "Problem file; default: the one the guide names");
+  c->add_option("--dense", a->dense_step, "Sample every edge at this step")
+      ->check(CLI::Range(1e-6, 1.0));
+  c->add_option("--format", a->format, "Form of the report")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+  c->add_option("-o,--output", a->output, "Report file; default: stdout");
+  AddCommon(c, &a->common);
+  return c;
+}
+
+CLI::App* AddStability(CLI::App& app, StabilityArguments* a) {
+  CLI::App* c = app.add_subcommand(
+      "stability", "Exact verdict on the balance of one configuration, with forces or a wrench");
+  c->add_option("problem", a->problem, "Problem file; with --guide the default is the guide's");
+  c->add_option("--posture", a->posture,
+                "start, goal, or a posture placed at the start's root pose");
+  c->add_option("--guide", a->guide, "Take the configuration from a guide or CSV path");
+  c->add_option("--at", a->at, "Edge index plus s, as in 12.5")->check(CLI::NonNegativeNumber);
+  c->add_option("--format", a->format, "Form of the report")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
+  AddCommon(c, &a->common);
+  return c;
+}
+
+CLI::App* AddModel(CLI::App& app, ModelArguments* a) {
+  CLI::App* c = app.add_subcommand("model", "Write the canonical model of a problem");
+  c->add_option("problem", a->problem, "Problem file (YAML)")->required();
+  c->add_option("-o,--output", a->output, "Model file (JSON); default: stdout");
+  AddCommon(c, &a->common);
+  return c;
+}
+
+CLI::App* AddDoctor(CLI::App& app, DoctorArguments* a) {
+  CLI::App* c = app.add_subcommand("doctor", "Say what of robot, scene and machine is suspicious");
+  c->add_option("problem", a->problem, "Problem file (YAML); without it: the machine alone");
+  AddCommon(c, &a->common);
+  return c;
+}
+
+CLI::App* AddView(CLI::App& app, ViewArguments* a) {
+  CLI::App* c = app.add_subcommand("view", "Write a page that shows a guide");
+  c->add_option("guide", a->guide, "Guide (JSON), or path (CSV) with --problem")->required();
+  c->add_option("--problem", a->problem, "Problem file; default: the one the guide names");
+  c->add_option("-o,--output", a->output, "Page to write (HTML)")->required();
+  c->add_option("--frames", a->frames, "Frames of the animation")->check(CLI::Range(2, 5000));
+  AddCommon(c, &a->common);
+  return c;
+}
+
+// CLI11 has exit codes of its own; users get 0 for help and 2 for a mistake in the call.
+int Parse(CLI::App& app, int argc, char** argv, bool* done) {
+  try {
+    app.parse(argc, argv);
+    *done = false;
+    return kExitOk;
+  } catch (const CLI::ParseError& error) {
+    *done = true;
+    return app.exit(error) == 0 ? kExitOk : kExitUsage;
+  }
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app("Plans guides for humanoids among obstacles and audits them.", "cguide");
+  app.set_version_flag("--version", std::string("cguide ") + kVersion);
+  app.require_subcommand(1);
+  PlanArguments plan;
+  AuditArguments audit;
+  StabilityArguments stability;
+  ModelArguments model;
+  DoctorArguments doctor;
+  ViewArguments view;
+  const std::pair<CLI::App*, std::function<int()>> commands[] = {
+      {AddPlan(app, &plan), [&] { return RunPlan(plan); }},
+      {AddAudit(app, &audit), [&] { return RunAudit(audit); }},
+      {AddStability(app, &stability), [&] { return RunStability(stability); }},
+      {AddView(app, &view), [&] { return RunView(view); }},
+      {AddModel(app, &model), [&] { return RunModel(model); }},
+      {AddDoctor(app, &doctor), [&] { return RunDoctor(doctor); }}};
+  bool done = false;
+  const int code = Parse(app, argc, argv, &done);
+  if (done) return code;
+  InstallInterruptHandler();
+  for (const auto& [command, run] : commands) {
+    if (command->parsed()) return run();
+  }
+  return kExitUsage;
+}
+
+int ExitCodeOf(const Error& error) {
+  switch (error.code()) {
+    case Error::Code::kBadInput:
+    case Error::Code::kIo:
+      return kExitBadInput;
+    case Error::Code::kInvalidArgument:
+    case Error::Code::kInternal:
+      break;
+  }
+  return kExitInternal;
+}
+
+}  // namespace
+}  // namespace cguide::cli
+
+int main(int argc, char** argv) {
+  try {
+    return cguide::cli::Main(argc, argv);
+  } catch (const cguide::Error& error) {
+    std::cerr << "cguide: " << error.what() << '\n';
+    return cguide::cli::ExitCodeOf(error);
+  } catch (const std::exception& error) {
+    std::cerr << "cguide: internal error: " << error.what()
+              << "; please report it with the command and its input\n";
+    return cguide::cli::kExitInternal;
+  }
+}

@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cguide/exact/core/error.h"
+#include "cguide/numeric/io/guide_io.h"
+#include "cguide/numeric/io/problem_reader.h"
+#include "cguide/numeric/sampled_edge.h"
+#include "cguide/planner/batch.h"
+#include "cguide/planner/endpoint.h"
+#include "cguide/planner/prm.h"
+#include "cguide/planner/rrt.h"
+#include "cguide/planner/shortcut.h"
+#include "cguide/verify/cli/commands.h"
+#include "cguide/verify/cli/console.h"
+#include "cguide/verify/cli/version.h"
+
+namespace cguide::cli {
+namespace {
+
+using numeric::Problem;
+using numeric::World;
+using planner::PlanResult;
+using planner::StopReason;
+
+// The stream of random numbers that shortcuts draw from, apart from those of the search.
+constexpr std::uint64_t kShortcutStream = 0x5c0ffee;
+
+struct Plan {
+  planner::Endpoint start;
+  planner::Endpoint goal;
+  PlanResult result;
+  double shortcut_seconds = 0;
+  double length_before = 0;
+};
+
+planner::ExtensionOptions MakeExtension(const PlanArguments& arguments) {
+  planner::ExtensionOptions options;
+  if (arguments.extension > 0) options.step = arguments.extension;
+  options.space = arguments.space == "free" ? numeric::Space::kFree : numeric::Space::kGuide;
+  return options;
+}
+
+planner::RunOptions MakeRun(const PlanArguments& arguments, ProgressLine* progress) {
+  planner::RunOptions run;
+  run.seed = arguments.seed;
+  run.threads = ThreadCount(arguments.common);
+  run.time_limit_s = arguments.time_limit_s;
+  run.iteration_limit = arguments.iteration_limit;
+  run.interrupt = &InterruptFlag();
+  run.on_progress = [progress](const planner::Progress& p) {
+    std::ostringstream text;
+    text << "planning: " << p.iterations << " iterations, " << p.start_nodes << " + "
+         << p.goal_nodes << " nodes, " << Short(p.seconds) << " s";
+    progress->Show(text.str());
+  };
+  return run;
+}
+
+PlanResult Search(const PlanArguments& arguments, const World& world, const Problem& problem,
+                  const Plan& plan, const EdgeOracle& oracle,
+                  const planner::ExtensionOptions& extension) {
+  ProgressLine progress(arguments.common);
+  const planner::RunOptions run = MakeRun(arguments, &progress);
+  if (arguments.planner == "prm") {
+    planner::Roadmap roadmap;
+    return planner::PlanPrm(world, problem.sampling, plan.start.q, plan.goal.q, oracle, extension,
+                            {}, run, &roadmap);
+  }
+  return planner::PlanRrt(world, problem.sampling, plan.start.q, plan.goal.q, oracle, extension,
+                          run);
+}
+
+Plan MakePlan(const PlanArguments& arguments, const World& world, const Problem& problem) {
+  const planner::ExtensionOptions extension = MakeExtension(arguments);
+  planner::ProjectionWorkspace workspace(world);
+  Plan plan;
+  plan.start =
+      planner::PrepareEndpoint(world, problem.start, extension.space, "start", {}, &workspace);
+  plan.goal =
+      planner::PrepareEndpoint(world, problem.goal, extension.space, "goal", {}, &workspace);
+  if (plan.start.projected) Say(arguments.common, "the start was projected into C_guide");
+  if (plan.goal.projected) Say(arguments.common, "the goal was projected into C_guide");
+  const EdgeOracle oracle =
+      numeric::MakeSampledOracle(world, {arguments.edge_step, extension.space});
+  plan.result = Search(arguments, world, problem, plan, oracle, extension);
+  if (plan.result.stop != StopReason::kSolved) return plan;
+  plan.length_before = planner::Length(plan.result.waypoints);
+  numeric::Rng rng = planner::JobRng(arguments.seed, kShortcutStream);
+  const planner::ExtensionContext context{world, oracle, extension, &workspace,
+                                          &plan.result.counters};
+  const auto begin = std::chrono::steady_clock::now();
+  plan.result.waypoints = planner::Shortcut(std::move(plan.result.waypoints),
+                                            {arguments.shortcut_rounds}, context, rng);
+  plan.shortcut_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return plan;
+}
+
+std::map<std::string, long> Counters(const PlanResult& result) {
+  const planner::PlannerCounters& c = result.counters;
+  std::map<std::string, long> counters{{"iterations", result.iterations},
+                                       {"nodes", result.start_nodes + result.goal_nodes},
+                                       {"samples", c.samples},
+                                       {"extensions", c.extensions},
+                                       {"projections", c.projections},
+                                       {"newton_steps", c.newton_steps},
+                                       {"edges_tested", c.edges_tested},
+                                       {"edges_accepted", c.edges_accepted}};
+  for (int i = 0; i < planner::kNumProjectionStops; ++i) {
+    const auto stop = static_cast<planner::ProjectionStop>(i);
+    counters[std::string("projection_") + planner::ToString(stop)] =
+        c.projection_stops[static_cast<std::size_t>(i)];
+  }
+  return counters;
+}
+
+void WriteGuideFile(const PlanArguments& arguments, const Problem& problem, const Plan& plan) {
+  numeric::io::Guide guide;
+  guide.path = {ColumnNames(problem.model.robot), plan.result.waypoints};
+  std::filesystem::path folder = std::filesystem::absolute(arguments.output).parent_path();
+  guide.problem_file =
+      std::filesystem::proximate(std::filesystem::absolute(arguments.problem), folder).string();
+  guide.model_digest = problem.model_digest;
+  guide.problem_digest = problem.problem_digest;
+  guide.tool_version = kVersion;
+  guide.seed = arguments.seed;
+  guide.edges = "sampled(" + Short(arguments.edge_step) + ")";
+  guide.start_projected = plan.start.projected;
+  guide.goal_projected = plan.goal.projected;
+  guide.counters = Counters(plan.result);
+  numeric::io::WriteFileAtomically(arguments.output, numeric::io::WriteGuide(guide));
+}
+
+void WriteStats(const PlanArguments& arguments, const Plan& plan) {
+  if (arguments.stats.empty()) return;
+  nlohmann::ordered_json stats;
+  stats["problem"] = arguments.problem;
+  stats["planner"] = arguments.planner;
+  stats["seed"] = arguments.seed;
+  stats["stop"] = planner::ToString(plan.result.stop);
+  stats["search_seconds"] = plan.result.seconds;
+  stats["shortcut_seconds"] = plan.shortcut_seconds;
+  stats["waypoints"] = plan.result.waypoints.size();
+  stats["length"] = planner::Length(plan.result.waypoints);
+  stats["length_before_shortcuts"] = plan.length_before;
+  for (const auto& [name, value] : Counters(plan.result)) stats["counters"][name] = value;
+  numeric::io::WriteFileAtomically(arguments.stats, stats.dump(2) + "\n");
+}
+
+int Conclude(const PlanArguments& arguments, const Problem& problem, const Plan& plan) {
+  const PlanResult& result = plan.result;
+  if (result.stop != StopReason::kSolved) {
+    Say(arguments.common, std::string("no guide found: ") + planner::ToString(result.stop) +
+                              " after " + std::to_string(result.iterations) + " iterations and " +
+                              Short(result.seconds) +
+                              " s; try another --seed or a longer "
+                              "--time-limit");
+    return result.stop == StopReason::kInterrupted ? kExitInterrupted : kExitUndecided;
+  }
+  WriteGuideFile(arguments, problem, plan);
+  std::cout << arguments.output << ": " << result.waypoints.size() << " waypoints, length "
+            << Short(planner::Length(result.waypoints)) << ", edges: sampled("
+            << Short(arguments.edge_step) << ")\n";
+  Say(arguments.common,
+      "solved in " + Short(result.seconds) + " s (" + std::to_string(result.iterations) +
+          " iterations, " + std::to_string(result.start_nodes + result.goal_nodes) +
+          " nodes), shortcuts " + Short(plan.shortcut_seconds) + " s, length " +
+          Short(plan.length_before) + " -> " + Short(planner::Length(result.waypoints)));
+  Say(arguments.common, "next: cguide view " + arguments.output +
+                            " -o page.html   or   cguide audit " + arguments.output +
+                            " --dense 0.002");
+  return kExitOk;
+}
+
+}  // namespace
+
+int RunPlan(const PlanArguments& arguments) {
+  RequireWritable(arguments.output);
+  if (!arguments.stats.empty()) RequireWritable(arguments.stats);
+  const Problem problem = numeric::io::ReadProblem(arguments.problem);
+  Warn(arguments.common, problem.warnings);
+  const World world(problem.model);
+  const Plan plan = MakePlan(arguments, world, problem);
+  const int code = Conclude(arguments, problem, plan);
+  WriteStats(arguments, plan);
+  return code;
+}
+
+}  // namespace cguide::cli
