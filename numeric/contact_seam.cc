@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "cguide/numeric/contact_internal.h"
 
 namespace cguide::numeric {
@@ -5,30 +7,68 @@ namespace {
 
 using Eigen::Vector3d;
 
-// min {|z - x| : z in T, |z - y| <= seam} lies in [low, high].
-struct SeamBounds {
-  double low = 0;
-  double high = INFINITY;
-};
+struct SeamQuestion {
+  const Geometry& g;
+  const SiteCandidate& owner;
+  const Vector3d& x;
+  const Vector3d& y;
+  double seam, error, d;  // d = |x - y|
 
-// By bisection over t (see the lemma); stops as soon as [low, high] excludes d.
-SeamBounds BisectSeam(const Geometry& g, const SiteCandidate& owner, const Vector3d& x,
-                      const Vector3d& y, double seam, double below, double above) {
-  SeamBounds bounds;
-  double t_low = 0, t_high = 1;
-  for (int i = 0; i < 60 && bounds.low < above && bounds.high > below; ++i) {
-    const double t = 0.5 * (t_low + t_high);
-    const Vector3d z = ClosestPoint(g, owner, x + t * (y - x));
-    if ((z - y).norm() > seam) {
-      t_low = t;
-      bounds.low = (z - x).norm();
-    } else {
-      t_high = t;
-      bounds.high = (z - x).norm();
+  Vector3d At(double t) const { return ClosestPoint(g, owner, x + t * (y - x)); }
+  double Away(const Vector3d& z) const { return (z - y).norm(); }
+  bool Nearer(const Vector3d& z) const { return (z - x).norm() < d - error; }
+  bool Farther(const Vector3d& z) const { return (z - x).norm() >= d + error; }
+
+  // Bisection over t (see the lemma). A ball larger than the seam by the error bounds the minimum
+  // from below, a smaller one from above. Both are asked on the way as long as t is outside the
+  // large ball or inside the small one; between the two each is asked alone.
+  Verdict Bisect() const {
+    double low = 0, high = 1;
+    for (int i = 0; i < 60; ++i) {
+      const double t = 0.5 * (low + high);
+      const Vector3d z = At(t);
+      if (Away(z) > seam + error) {
+        if (Farther(z)) return Verdict::kHolds;
+        low = t;
+      } else if (Away(z) <= seam - error) {
+        if (Nearer(z)) return Verdict::kFails;
+        high = t;
+      } else {
+        if (FartherOutside(low, t)) return Verdict::kHolds;
+        return NearerInside(t, high) ? Verdict::kFails : Verdict::kUndecided;
+      }
     }
+    return Verdict::kUndecided;
   }
-  return bounds;
-}
+
+  bool FartherOutside(double low, double high) const {
+    for (int i = 0; i < 60; ++i) {
+      const double t = 0.5 * (low + high);
+      const Vector3d z = At(t);
+      if (Away(z) <= seam + error) {
+        high = t;
+        continue;
+      }
+      if (Farther(z)) return true;
+      low = t;
+    }
+    return false;
+  }
+
+  bool NearerInside(double low, double high) const {
+    for (int i = 0; i < 60; ++i) {
+      const double t = 0.5 * (low + high);
+      const Vector3d z = At(t);
+      if (Away(z) > seam - error) {
+        low = t;
+        continue;
+      }
+      if (Nearer(z)) return true;
+      high = t;
+    }
+    return false;
+  }
+};
 
 }  // namespace
 
@@ -50,20 +90,17 @@ Vector3d ClosestPoint(const Geometry& g, const SiteCandidate& owner, const Vecto
 
 Verdict StaysClosest(const Geometry& g, const SiteCandidate& owner, const Vector3d& x,
                      const Vector3d& y, double seam, double error) {
-  const double d = (x - y).norm();
-  const Vector3d z0 = ClosestPoint(g, owner, x);
-  const double least = (z0 - x).norm();
-  if (least >= d + error) return Verdict::kHolds;
-  const double away = (z0 - y).norm();
-  if (away <= seam - error) return least < d - error ? Verdict::kFails : Verdict::kUndecided;
-  if ((ClosestPoint(g, owner, y) - y).norm() > seam + error) return Verdict::kHolds;
-  // A ball that is larger by the error bounds the minimum from below, a smaller one from above.
-  if (BisectSeam(g, owner, x, y, seam + error, 0, d + error).low >= d + error) {
-    return Verdict::kHolds;
-  }
-  return BisectSeam(g, owner, x, y, seam - error, d - error, INFINITY).high < d - error
-             ? Verdict::kFails
-             : Verdict::kUndecided;
+  const SeamQuestion ask{g, owner, x, y, seam, error, (x - y).norm()};
+  const Vector3d z0 = ask.At(0);
+  if (ask.Farther(z0)) return Verdict::kHolds;
+  if (ask.Away(z0) <= seam - error) return ask.Nearer(z0) ? Verdict::kFails : Verdict::kUndecided;
+  const Vector3d z1 = ask.At(1);
+  if (ask.Away(z1) > seam + error) return Verdict::kHolds;
+  // The usual end, without bisection: z1 is all but y, and from it the segment towards z0, in T,
+  // leads nearer to x; |. - x| is convex along it.
+  const double step = (seam - error - ask.Away(z1)) / (z0 - z1).norm();
+  if (step > 0 && ask.Nearer(z1 + std::min(1.0, step) * (z0 - z1))) return Verdict::kFails;
+  return ask.Bisect();
 }
 
 Verdict StaysOutsideSolids(const Geometry& g, const std::vector<SiteCandidate>& candidates,
