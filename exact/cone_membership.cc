@@ -24,6 +24,22 @@ IntegerVector ToIntegers(const VectorXq& v, Rational* scale) {
   return result;
 }
 
+/** Brings the scales of all columns within a factor of two of each other by powers of two, and
+ beyond that of the target by 2^10, so that one t means about the same weight on every generator,
+ and a weight worth having. Any scales give right answers; these give witnesses well inside the
+ cone. */
+void Balance(const Rational& target_scale, std::vector<IntegerVector>* columns,
+             std::vector<Rational>* scales) {
+  Rational largest = target_scale * 1024;
+  for (const Rational& s : *scales) largest = std::max(largest, s);
+  for (std::size_t i = 0; i < columns->size(); ++i) {
+    const mpz_class ratio = mpz_class(largest / (*scales)[i]);  // >= 1, rounded down
+    const mpz_class factor = mpz_class(1) << (mpz_sizeinbase(ratio.get_mpz_t(), 2) - 1);
+    for (mpz_class& x : (*columns)[i]) x *= factor;
+    (*scales)[i] *= factor;
+  }
+}
+
 /** A vector orthogonal to all generators, not zero; none where they span the space. Found as the
  rejection of a unit vector by Gram-Schmidt without normalisation. */
 std::optional<VectorXq> Normal(const std::vector<VectorXq>& generators, Eigen::Index size) {
@@ -64,6 +80,7 @@ ConeMembership Decide(const std::vector<VectorXq>& generators, const VectorXq& v
   }
   Rational scale;
   const IntegerVector target = ToIntegers(v, &scale);
+  Balance(scale, &columns, &scales);
   const auto solution = internal::SolveMembership(columns, target);
   if (!solution.feasible) {
     result.y = solution.y;

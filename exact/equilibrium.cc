@@ -1,6 +1,8 @@
 #include "cguide/exact/equilibrium.h"
 
+#include <Eigen/QR>
 #include <algorithm>
+#include <optional>
 
 #include "cguide/exact/cone_membership.h"
 #include "cguide/exact/core/error.h"
@@ -16,11 +18,41 @@ VectorXq DemandedWrench(const EquilibriumQuery& query) {
   return v;
 }
 
-VectorXq Wrench(const EquilibriumQuery& query, int contact, const Vector3q& u) {
+VectorXq Wrench(const Vector3q& arm, const Vector3q& u) {
   VectorXq wrench(6);
   wrench.head(3) = u;
-  wrench.tail(3) = Cross(query.contacts[contact].p - query.com, u);
+  wrench.tail(3) = Cross(arm, u);
   return wrench;
+}
+
+Vector3q Arm(const EquilibriumQuery& query, int contact) {
+  return query.contacts[contact].p - query.com;
+}
+
+Rational ArmError(const EquilibriumQuery& query, int contact) {
+  return query.contacts[contact].error_p + query.com_error;
+}
+
+/** Corners of a set that holds every arm the errors allow: the arm alone, or a regular tetrahedron
+ around it whose inscribed ball has radius 2e/sqrt 3 > e. */
+std::vector<Vector3q> PossibleArms(const EquilibriumQuery& query, int contact) {
+  const Vector3q arm = Arm(query, contact);
+  const Rational e = ArmError(query, contact);
+  if (e == 0) return {arm};
+  std::vector<Vector3q> corners(4, arm);
+  for (int corner = 0; corner < 4; ++corner) {
+    for (int k = 0; k < 3; ++k) {
+      corners[corner][k] += (corner == 0 || corner == k + 1 ? 2 : -2) * e;
+    }
+  }
+  return corners;
+}
+
+bool IsExact(const EquilibriumQuery& query) {
+  return query.com_error == 0 &&
+         std::all_of(query.contacts.begin(), query.contacts.end(), [](const ExactContact& c) {
+           return c.error_p == 0 && c.error_w == 0 && c.certain;
+         });
 }
 
 /** The force direction of each generator, its contact and its wrench. */
@@ -29,14 +61,32 @@ struct Generators {
   std::vector<VectorXq> wrenches;
 };
 
-template <typename Pyramid>
-Generators MakeGenerators(const EquilibriumQuery& query, Pyramid pyramid, int sides) {
+Generators InnerGenerators(const EquilibriumQuery& query, int sides) {
   Generators result;
   for (std::size_t i = 0; i < query.contacts.size(); ++i) {
-    const int contact = static_cast<int>(i);
-    for (const Vector3q& u : pyramid(query.contacts[i].cone, sides)) {
-      result.forces.push_back({contact, u});
-      result.wrenches.push_back(Wrench(query, contact, u));
+    const ExactContact& contact = query.contacts[i];
+    const auto cone = Narrowed(contact.cone, contact.error_w);
+    if (!contact.certain || !cone) continue;
+    const Vector3q arm = Arm(query, static_cast<int>(i));
+    for (const Vector3q& u : InscribedPyramid(*cone, sides)) {
+      result.forces.push_back({static_cast<int>(i), u});
+      result.wrenches.push_back(Wrench(arm, u));
+    }
+  }
+  return result;
+}
+
+/** Generators of a cone that holds every wrench of every contact; nothing where the error of a
+ normal is too large to bound its cone. */
+std::optional<std::vector<VectorXq>> OuterGenerators(const EquilibriumQuery& query, int sides) {
+  std::vector<VectorXq> result;
+  for (std::size_t i = 0; i < query.contacts.size(); ++i) {
+    const auto cone = Widened(query.contacts[i].cone, query.contacts[i].error_w);
+    if (!cone) return std::nullopt;
+    for (const Vector3q& u : CircumscribedPyramid(*cone, sides)) {
+      for (const Vector3q& arm : PossibleArms(query, static_cast<int>(i))) {
+        result.push_back(Wrench(arm, u));
+      }
     }
   }
   return result;
@@ -55,50 +105,125 @@ std::vector<ContactForce> WeightedForces(const Generators& generators,
   return result;
 }
 
-void RequireQuery(const EquilibriumQuery& query) {
-  Require(query.mass > 0, "the mass must be positive");
-  Require(!IsZero(query.gravity), "gravity must not vanish");
+/** One rung of the ladder. Returns whether the result is final. */
+bool Refine(const EquilibriumQuery& query, const VectorXq& v, StabilityResult* result) {
+  const Generators inner = InnerGenerators(query, result->sides);
+  const ConeMembership inside = DecideConeMembership(inner.wrenches, v);
+  result->forces.clear();
+  if (inside.where != Membership::kOutside) result->forces = WeightedForces(inner, inside);
+  if (inside.where == Membership::kInterior) {
+    const bool proved = CheckInteriorForces(query, result->forces);
+    if (proved) result->verdict = Verdict::kHolds;
+    result->reason = proved ? StabilityReason::kNone : StabilityReason::kErrors;
+    return proved;
+  }
+  if (inside.where == Membership::kBoundary && result->rank < 6) {
+    result->reason = StabilityReason::kRank;
+    return true;
+  }
+  result->reason = StabilityReason::kLadder;
+  const auto outer = OuterGenerators(query, result->sides);
+  if (!outer) return false;
+  const ConeMembership outside = DecideConeMembership(*outer, v);
+  if (outside.where == Membership::kOutside) {
+    result->separator = outside.y;
+    result->verdict = Verdict::kFails;
+    result->reason = StabilityReason::kNone;
+    return true;
+  }
+  // In the closed inner cone and on a supporting hyperplane of the outer one: on the boundary of
+  // everything between.
+  if (inside.where == Membership::kBoundary && outside.where == Membership::kBoundary &&
+      IsExact(query)) {
+    result->separator = outside.y;
+    result->reason = StabilityReason::kBoundary;
+    return true;
+  }
+  return false;
+}
+
+/** Six of the wrenches, chosen in doubles for a well-conditioned basis: a proposal only. */
+std::vector<int> ProposeBasis(const std::vector<VectorXq>& wrenches) {
+  Eigen::MatrixXd columns(6, static_cast<Eigen::Index>(wrenches.size()));
+  for (std::size_t j = 0; j < wrenches.size(); ++j) {
+    for (int k = 0; k < 6; ++k) {
+      columns(k, static_cast<Eigen::Index>(j)) = NearestDouble(wrenches[j][k]);
+    }
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+  std::vector<int> basis;
+  for (int k = 0; k < 6; ++k) basis.push_back(qr.colsPermutation().indices()[k]);
+  return basis;
+}
+
+/** Squared norm of the largest moment part of a row of B^-1, by Gauss-Jordan elimination; nothing
+ where B is singular. */
+std::optional<Rational> SquaredMomentNorm(const std::vector<VectorXq>& columns) {
+  MatrixXq m = MatrixXq::Zero(6, 12);
+  for (int j = 0; j < 6; ++j) {
+    for (int i = 0; i < 6; ++i) m(i, j) = columns[j][i];
+    m(j, 6 + j) = 1;
+  }
+  for (int k = 0; k < 6; ++k) {
+    int pivot = k;
+    while (pivot < 6 && m(pivot, k) == 0) ++pivot;
+    if (pivot == 6) return std::nullopt;
+    if (pivot != k) m.row(k).swap(m.row(pivot));
+    for (int i = 0; i < 6; ++i) {
+      if (i == k || m(i, k) == 0) continue;
+      const Rational factor = m(i, k) / m(k, k);
+      for (int j = k; j < 12; ++j) m(i, j) -= factor * m(k, j);
+    }
+  }
+  Rational largest = 0;
+  for (int k = 0; k < 6; ++k) {
+    Rational squared = 0;
+    for (int j = 9; j < 12; ++j) squared += m(k, j) * m(k, j);
+    largest = std::max(largest, Rational(squared / (m(k, k) * m(k, k))));
+  }
+  return largest;
+}
+
+/** The inequality of CheckInteriorForces: rho (sum_j e_j |f_j| + sum_B e_j |f_j|) < 1. */
+bool SurvivesErrors(const EquilibriumQuery& query, const std::vector<ContactForce>& forces,
+                    const std::vector<VectorXq>& wrenches) {
+  if (wrenches.size() < 6) return false;
+  std::vector<VectorXq> basis;
+  Rational sum = 0;
+  const auto moment_error = [&](const ContactForce& force) {
+    const Rational e = ArmError(query, force.contact);
+    return e == 0 ? Rational(0) : Rational(e * SqrtUp(SquaredNorm(force.f)));
+  };
+  for (const ContactForce& force : forces) sum += moment_error(force);
+  for (int j : ProposeBasis(wrenches)) {
+    basis.push_back(wrenches[j]);
+    sum += moment_error(forces[j]);
+  }
+  const std::optional<Rational> squared = SquaredMomentNorm(basis);
+  return squared && *squared * sum * sum < 1;
 }
 
 }  // namespace
 
 StabilityResult DecideStability(const EquilibriumQuery& query) {
-  RequireQuery(query);
+  Require(query.mass > 0, "the mass must be positive");
+  Require(!IsZero(query.gravity), "gravity must not vanish");
+  Require(query.com_error >= 0, "an error bound must not be negative");
+  for (const ExactContact& contact : query.contacts) {
+    Require(contact.error_p >= 0, "an error bound must not be negative");
+    Require(!IsZero(contact.cone.w), "a contact normal must not vanish");
+  }
   const VectorXq v = DemandedWrench(query);
   StabilityResult result;
   result.rank = WrenchRank(query);
   for (int sides = 4; sides <= 64; sides *= 2) {
     result.sides = sides;
-    const Generators inner = MakeGenerators(query, InscribedPyramid, sides);
-    const ConeMembership inside = DecideConeMembership(inner.wrenches, v);
-    if (inside.where != Membership::kOutside) result.forces = WeightedForces(inner, inside);
-    if (inside.where == Membership::kInterior) {
-      result.verdict = Verdict::kHolds;
-      return result;
-    }
-    if (inside.where == Membership::kBoundary && result.rank < 6) {
-      result.reason = StabilityReason::kRank;
-      return result;
-    }
-    const Generators outer = MakeGenerators(query, CircumscribedPyramid, sides);
-    const ConeMembership outside = DecideConeMembership(outer.wrenches, v);
-    if (outside.where == Membership::kInterior) continue;
-    if (outside.where == Membership::kOutside) {
-      result.separator = outside.y;
-      result.verdict = Verdict::kFails;
-      result.forces.clear();
-      return result;
-    }
-    // In the closed inner cone and on a supporting hyperplane of the outer one: on the boundary of
-    // everything between.
-    if (inside.where == Membership::kBoundary) {
-      result.separator = outside.y;
-      result.reason = StabilityReason::kBoundary;
-      return result;
-    }
+    if (Refine(query, v, &result)) break;
   }
-  result.reason = StabilityReason::kLadder;
-  result.forces.clear();
+  const bool has_forces = result.verdict == Verdict::kHolds ||
+                          result.reason == StabilityReason::kBoundary ||
+                          result.reason == StabilityReason::kRank;
+  if (!has_forces) result.forces.clear();
   return result;
 }
 
@@ -107,7 +232,7 @@ bool CheckForces(const EquilibriumQuery& query, const std::vector<ContactForce>&
   for (const ContactForce& force : forces) {
     if (force.contact < 0 || force.contact >= static_cast<int>(query.contacts.size())) return false;
     if (!IsAdmissible(query.contacts[force.contact].cone, force.f)) return false;
-    sum += Wrench(query, force.contact, force.f);
+    sum += Wrench(Arm(query, force.contact), force.f);
   }
   return sum == DemandedWrench(query);
 }
@@ -116,34 +241,40 @@ bool CheckInteriorForces(const EquilibriumQuery& query, const std::vector<Contac
   if (!CheckForces(query, forces)) return false;
   std::vector<VectorXq> wrenches;
   for (const ContactForce& force : forces) {
-    wrenches.push_back(Wrench(query, force.contact, force.f));
+    const ExactContact& contact = query.contacts[force.contact];
+    const auto cone = Narrowed(contact.cone, contact.error_w);
+    if (!contact.certain || !cone || !IsAdmissible(*cone, force.f)) return false;
+    wrenches.push_back(Wrench(Arm(query, force.contact), force.f));
   }
-  return Rank(wrenches) == 6;
+  return IsExact(query) ? Rank(wrenches) == 6 : SurvivesErrors(query, forces, wrenches);
 }
 
 bool CheckSeparatingWrench(const EquilibriumQuery& query, const Vector6q& y) {
   const Vector3q y_f = y.head(3), y_m = y.tail(3);
-  const bool supports =
-      std::all_of(query.contacts.begin(), query.contacts.end(), [&](const ExactContact& contact) {
-        return IsNeverDrivenBy(contact.cone, y_f + Cross(y_m, contact.p - query.com));
-      });
-  return supports && Dot(VectorXq(y), DemandedWrench(query)) > 0;
+  for (std::size_t i = 0; i < query.contacts.size(); ++i) {
+    const auto cone = Widened(query.contacts[i].cone, query.contacts[i].error_w);
+    if (!cone) return false;
+    for (const Vector3q& arm : PossibleArms(query, static_cast<int>(i))) {
+      if (!IsNeverDrivenBy(*cone, y_f + Cross(y_m, arm))) return false;
+    }
+  }
+  return Dot(y, DemandedWrench(query)) > 0;
 }
 
 int WrenchRank(const EquilibriumQuery& query) {
   std::vector<VectorXq> wrenches;
   for (std::size_t i = 0; i < query.contacts.size(); ++i) {
-    const int contact = static_cast<int>(i);
+    const Vector3q arm = Arm(query, static_cast<int>(i));
     const FrictionCone& cone = query.contacts[i].cone;
     // A revolution cone with mu > 0 has interior, so it spans R^3; without friction it is a ray.
     if (cone.mu == 0) {
-      wrenches.push_back(Wrench(query, contact, cone.w));
+      wrenches.push_back(Wrench(arm, cone.w));
       continue;
     }
     for (int k = 0; k < 3; ++k) {
       Vector3q axis = Vector3q::Zero();
       axis[k] = 1;
-      wrenches.push_back(Wrench(query, contact, axis));
+      wrenches.push_back(Wrench(arm, axis));
     }
   }
   return Rank(wrenches);
@@ -157,6 +288,8 @@ std::string Describe(const StabilityResult& result) {
       return "boundary (rank 6)";
     case StabilityReason::kRank:
       return "boundary (rank " + std::to_string(result.rank) + ")";
+    case StabilityReason::kErrors:
+      return "the margin is within the errors of the contacts";
     case StabilityReason::kLadder:
       return "within the gap of pyramids with " + std::to_string(result.sides) + " sides";
   }

@@ -89,6 +89,31 @@ bool IsNeverDrivenBy(const FrictionCone& cone, const Vector3q& g) {
          squared >= cone.mu * cone.mu * (SquaredNorm(g) * SquaredNorm(cone.w) - squared);
 }
 
+namespace {
+
+/** An upper bound of tan asin(error/|w|); nothing at 90 degrees and beyond. */
+std::optional<Rational> TangentOfTilt(const FrictionCone& cone, const Rational& error) {
+  Require(error >= 0, "an error bound must not be negative");
+  const Rational rest = SquaredNorm(cone.w) - error * error;
+  if (rest <= 0) return std::nullopt;
+  return SqrtUp(error * error / rest);
+}
+
+}  // namespace
+
+// tan(a -+ b) = (tan a -+ tan b)/(1 +- tan a tan b), falling (rising) in tan b.
+std::optional<FrictionCone> Narrowed(const FrictionCone& cone, const Rational& error) {
+  const std::optional<Rational> tilt = TangentOfTilt(cone, error);
+  if (!tilt || *tilt > cone.mu) return std::nullopt;
+  return FrictionCone{cone.w, (cone.mu - *tilt) / (1 + cone.mu * *tilt)};
+}
+
+std::optional<FrictionCone> Widened(const FrictionCone& cone, const Rational& error) {
+  const std::optional<Rational> tilt = TangentOfTilt(cone, error);
+  if (!tilt || cone.mu * *tilt >= 1) return std::nullopt;
+  return FrictionCone{cone.w, (cone.mu + *tilt) / (1 - cone.mu * *tilt)};
+}
+
 std::vector<Vector3q> InscribedPyramid(const FrictionCone& cone, int n) {
   RequireCone(cone, n);
   const Ring ring(cone.w);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "cguide/exact/core/rational.h"
@@ -22,6 +23,12 @@ bool IsAdmissible(const FrictionCone& cone, const Vector3q& u);
  the supremum of g.u is (g.w)/|w| + mu |g - (g.w) w/|w|^2|. It is <= 0 iff g.w <= 0 and (g.w)^2 >=
  mu^2 (|g|^2 |w|^2 - (g.w)^2). */
 bool IsNeverDrivenBy(const FrictionCone& cone, const Vector3q& g);
+
+/** A cone inside (outside) every cone of the same mu about a normal within `error` of w: the half
+ angle atan mu is changed by asin(error/|w|), rounded to the safe side. Nothing where no such cone
+ with mu >= 0 exists (inside), or none with a half angle below 90 degrees (outside). */
+std::optional<FrictionCone> Narrowed(const FrictionCone& cone, const Rational& error);
+std::optional<FrictionCone> Widened(const FrictionCone& cone, const Rational& error);
 
 /** Generators (not unit) of an n-sided pyramid inside the cone, every one admissible. The first is
  w + mu |w| t up to rounding, t the unit projection of the world axis least aligned with w (the

@@ -17,19 +17,23 @@ void Improve(const ObstaclePiece& piece, const PlacedSite& site, Approach* best)
     }
   };
   switch (piece.kind) {
-    case PieceKind::kConvex: return offer(ProjectPoint(piece.convex, site.x));
+    case PieceKind::kConvex:
+      return offer(ProjectPoint(piece.convex, site.x));
     case PieceKind::kHalfspace: {
       PointProjection p;
       p.distance = HalfspaceDistance(piece, site.x);
       p.n = piece.normal;
       return offer(p);
     }
-    case PieceKind::kMesh: break;
+    case PieceKind::kMesh:
+      break;
   }
   const Mesh& mesh = *piece.mesh;
-  VisitByDistance(mesh, site.x, [&] { return best->distance + site.radius; }, [&](int t) {
-    offer(ProjectPoint(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2), 0, site.x));
-  });
+  VisitByDistance(
+      mesh, site.x, [&] { return best->distance + site.radius; },
+      [&](int t) {
+        offer(ProjectPoint(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2), 0, site.x));
+      });
 }
 
 bool Before(const Approach& a, const Approach& b) {

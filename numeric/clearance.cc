@@ -1,7 +1,6 @@
-#include "cguide/numeric/clearance_internal.h"
-
 #include <algorithm>
 
+#include "cguide/numeric/clearance_internal.h"
 #include "cguide/numeric/fcl_distance_internal.h"
 #include "cguide/numeric/gjk_internal.h"
 
@@ -45,7 +44,8 @@ void AskFcl(const Convex& a, const Convex& b, DirectedClearance* result, StageCo
 }
 
 // Penetration depth along the axes at hand, an estimate from above.
-void EstimateDepth(const Convex& a, const Convex& b, const GjkResult& gjk, DirectedClearance* result) {
+void EstimateDepth(const Convex& a, const Convex& b, const GjkResult& gjk,
+                   DirectedClearance* result) {
   const BoxAxis axis = BestBoxAxis(a, b);
   SeparationHint hint;
   hint.code = static_cast<signed char>(axis.code);
@@ -156,8 +156,9 @@ DirectedClearance MeshClearance(const Convex& shape, const Mesh& mesh, double cu
   const auto radius = [&] { return all.overlap ? -INFINITY : slack + std::min(cutoff, all.hi); };
   VisitByDistance(mesh, shape.c, radius, [&](int t) {
     std::array<Vector3d, 3> corners;
-    Absorb(ConvexClearance(shape, TriangleConvex(mesh, t, &corners), std::min(cutoff, all.hi), counts),
-           &all);
+    Absorb(
+        ConvexClearance(shape, TriangleConvex(mesh, t, &corners), std::min(cutoff, all.hi), counts),
+        &all);
   });
   if (all.overlap || !mesh.solid) return all;
   const Vector3d x = InnerPoint(shape);

@@ -8,9 +8,12 @@ using Eigen::Vector3d;
 Verdict DecidePiece(const Convex& shape, const ObstaclePiece& piece, double skin,
                     SeparationHint* hint, StageCounts* counts) {
   switch (piece.kind) {
-    case PieceKind::kConvex: return DecideConvex(shape, piece.convex, skin, hint, counts);
-    case PieceKind::kHalfspace: return DecideHalfspace(shape, piece, skin, counts);
-    case PieceKind::kMesh: return DecideMesh(shape, *piece.mesh, skin, counts);
+    case PieceKind::kConvex:
+      return DecideConvex(shape, piece.convex, skin, hint, counts);
+    case PieceKind::kHalfspace:
+      return DecideHalfspace(shape, piece, skin, counts);
+    case PieceKind::kMesh:
+      return DecideMesh(shape, *piece.mesh, skin, counts);
   }
   return Verdict::kUndecided;
 }

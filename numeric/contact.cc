@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Exit through a face of a box for a site that touches it or is inside: the nearest face whose plane
-// no piece near y pierces, so that the joint between two tiles is no way out.
+// Exit through a face of a box for a site that touches it or is inside: the nearest face whose
+// plane no piece near y pierces, so that the joint between two tiles is no way out.
 bool Uncovered(const Geometry& g, const std::vector<SiteCandidate>& all, std::size_t self,
                const PointProjection& p, double seam, double error) {
   // Seen from a point far above y the question "does anything rise above the plane within the seam"
@@ -119,8 +119,10 @@ struct SiteQuery {
       } else {
         const Mesh& mesh = *piece.mesh;
         VisitNear(mesh, site.x, reach + site.error, [&](int t) {
-          AddCandidate(index, t, ProjectPoint(mesh.corner(t, 0), mesh.corner(t, 1),
-                                              mesh.corner(t, 2), mesh.error, site.x), reach);
+          AddCandidate(index, t,
+                       ProjectPoint(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2),
+                                    mesh.error, site.x),
+                       reach);
           return true;
         });
       }
@@ -189,8 +191,8 @@ struct SiteQuery {
       if (InCluster(j)) continue;
       Verdict one = Verdict::kHolds;
       if (touching) {
-        one = StaysClosest(g, all[j], x, c.p.y, rules.seam,
-                           PointError(c) + rules.seam * rules.seam);
+        one =
+            StaysClosest(g, all[j], x, c.p.y, rules.seam, PointError(c) + rules.seam * rules.seam);
         if (one == Verdict::kUndecided) one = Verdict::kHolds;  // As in Uncovered.
       } else if (all[j].p.distance - DistanceError(all[j]) < c.p.distance + error) {
         one = StaysClosest(g, all[j], x, c.p.y, rules.seam,
@@ -202,10 +204,11 @@ struct SiteQuery {
     return verdict;
   }
 
-  // Against the inside of solids. Let z* be the point of the ball of radius seam about y on the way to
-  // x (x itself if it is nearer). If a point z of the solid in the ball is nearer to x than y is, then
-  // either some triangle has such a point, or the cap {|z - y| <= seam, |z - x| < |x - y|}, which is
-  // connected and holds z*, meets the solid without meeting its surface, so that z* is in the solid.
+  // Against the inside of solids. Let z* be the point of the ball of radius seam about y on the way
+  // to x (x itself if it is nearer). If a point z of the solid in the ball is nearer to x than y
+  // is, then either some triangle has such a point, or the cap {|z - y| <= seam, |z - x| < |x -
+  // y|}, which is connected and holds z*, meets the solid without meeting its surface, so that z*
+  // is in the solid.
   Verdict SolidVerdict(const SiteCandidate& c) const {
     Verdict verdict = Verdict::kHolds;
     int last = -1;
@@ -222,8 +225,10 @@ struct SiteQuery {
                    .distance > unclear;
       });
       const auto winding = clear ? WindingNumber(mesh, z) : std::nullopt;
-      if (!winding) verdict = Verdict::kUndecided;
-      else if (*winding != 0) return Verdict::kFails;
+      if (!winding)
+        verdict = Verdict::kUndecided;
+      else if (*winding != 0)
+        return Verdict::kFails;
     }
     return verdict;
   }
@@ -269,8 +274,7 @@ void SiteQuery::Emit(int index, std::vector<Contact>* contacts) const {
   contact.distance = c.p.distance;
   contact.friction = least;
   contact.error = std::max(error, distance_error) + spread;
-  contact.certain = in_band == 1 && !bent &&
-                    survivors == static_cast<int>(scratch->cluster.size());
+  contact.certain = in_band == 1 && !bent && survivors == static_cast<int>(scratch->cluster.size());
   contacts->push_back(contact);
   // Where owners within rounding of y differ in friction the smallest is right for a proof, and a
   // refutation must allow for the largest.
@@ -332,7 +336,8 @@ Vector3d ClosestPoint(const Geometry& g, const SiteCandidate& owner, const Vecto
   }
   const Mesh& mesh = *piece.mesh;
   return ProjectPoint(mesh.corner(owner.triangle, 0), mesh.corner(owner.triangle, 1),
-                      mesh.corner(owner.triangle, 2), 0, z).y;
+                      mesh.corner(owner.triangle, 2), 0, z)
+      .y;
 }
 
 Verdict StaysClosest(const Geometry& g, const SiteCandidate& owner, const Vector3d& x,
@@ -397,8 +402,7 @@ void FindContacts(const World& world, Workspace* workspace, std::vector<Contact>
     for (const BodySite& site : body.sites) {
       placed.x = X_WB * site.x_B;
       placed.radius = site.radius;
-      placed.error =
-          PlacementError(error_R, error_p, site.x_B.lpNorm<1>(), placed.x.lpNorm<1>());
+      placed.error = PlacementError(error_R, error_p, site.x_B.lpNorm<1>(), placed.x.lpNorm<1>());
       FindSiteContacts(world, site.site, placed, scratch.near, &scratch, contacts);
     }
   }

@@ -13,26 +13,26 @@ struct PlacedSite {
   int body = -1;
 };
 
-/** The closest point of the closed set (convex piece or triangle) of a candidate to z; z where it is
- inside. */
+/** The closest point of the closed set (convex piece or triangle) of a candidate to z; z where it
+ is inside. */
 Eigen::Vector3d ClosestPoint(const Geometry& g, const SiteCandidate& owner,
                              const Eigen::Vector3d& z);
 
-/** Whether some point of T (the piece of `owner`) within `seam` of y is strictly nearer to x than y:
- kFails for certain (it is), kHolds for certain (none is), else kUndecided. `error` bounds the errors
- of x, y, and |x - y|.
+/** Whether some point of T (the piece of `owner`) within `seam` of y is strictly nearer to x than
+ y: kFails for certain (it is), kHolds for certain (none is), else kUndecided. `error` bounds the
+ errors of x, y, and |x - y|.
 
- Lemma. Let z(t) be the closest point of the closed convex T to x + t (y - x), t in [0, 1]. Expanding
- squares, |z - x - t(y - x)|^2 = (1-t) |z-x|^2 + t |z-y|^2 - t(1-t) |x-y|^2, so z(t) minimises
- (1-t)|z-x|^2 + t|z-y|^2 over T. Adding the two inequalities for t < t' shows that |z(t) - y| does not
- increase and |z(t) - x| does not decrease with t. Let d(y, T) <= seam, and let t* be the smallest t
- with |z(t) - y| <= seam. If t* = 0, z(0) is the point of T nearest to x and lies in the ball. If
- 0 < t* < 1, |z(t*) - y| = seam by continuity, and any z of T in the ball has
- (1-t*) |z-x|^2 >= (1-t*) |z(t*)-x|^2 + t* (seam^2 - |z-y|^2) >= (1-t*) |z(t*)-x|^2. If t* = 1 the
- bound |z - x| >= |z(t) - x| of all t < 1 carries over. So min {|z-x| : z in T, |z-y| <= seam} =
- |z(t*) - x|, and bisection encloses it: every t with |z(t)-y| > seam gives a lower bound, every other
- t an upper bound. If y is in T the minimum is below |x-y| iff d(x, T) is: the segment from y to z(0)
- is in T and |. - x| is strictly convex along it. */
+ Lemma. Let z(t) be the closest point of the closed convex T to x + t (y - x), t in [0, 1].
+ Expanding squares, |z - x - t(y - x)|^2 = (1-t) |z-x|^2 + t |z-y|^2 - t(1-t) |x-y|^2, so z(t)
+ minimises (1-t)|z-x|^2 + t|z-y|^2 over T. Adding the two inequalities for t < t' shows that |z(t) -
+ y| does not increase and |z(t) - x| does not decrease with t. Let d(y, T) <= seam, and let t* be
+ the smallest t with |z(t) - y| <= seam. If t* = 0, z(0) is the point of T nearest to x and lies in
+ the ball. If 0 < t* < 1, |z(t*) - y| = seam by continuity, and any z of T in the ball has (1-t*)
+ |z-x|^2 >= (1-t*) |z(t*)-x|^2 + t* (seam^2 - |z-y|^2) >= (1-t*) |z(t*)-x|^2. If t* = 1 the bound |z
+ - x| >= |z(t) - x| of all t < 1 carries over. So min {|z-x| : z in T, |z-y| <= seam} = |z(t*) - x|,
+ and bisection encloses it: every t with |z(t)-y| > seam gives a lower bound, every other t an upper
+ bound. If y is in T the minimum is below |x-y| iff d(x, T) is: the segment from y to z(0) is in T
+ and |. - x| is strictly convex along it. */
 Verdict StaysClosest(const Geometry& g, const SiteCandidate& owner, const Eigen::Vector3d& x,
                      const Eigen::Vector3d& y, double seam, double error);
 

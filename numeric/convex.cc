@@ -44,16 +44,17 @@ void ProjectOnCylinder(const Convex& s, const Vector3d& x, PointProjection* p) {
     p->y = x - p->distance * p->n;
     return;
   }
-  const Vector3d q = (side > 0 ? Vector3d(r * radial[0], r * radial[1], 0) : Vector3d(l[0], l[1], 0)) +
-                     Vector3d(0, 0, cap > 0 ? sign * h : l[2]);
+  const Vector3d q =
+      (side > 0 ? Vector3d(r * radial[0], r * radial[1], 0) : Vector3d(l[0], l[1], 0)) +
+      Vector3d(0, 0, cap > 0 ? sign * h : l[2]);
   p->distance = (l - q).norm();
   p->n = s.R * ((l - q) / p->distance);
   p->y = s.c + s.R * q;
 }
 
-// Where the point y of a convex set T is at |x - y| = hi from x, and every point of T is at least lo
-// away, the closest point z satisfies |x-y|^2 >= |x-z|^2 + |z-y|^2 (the angle at z is not acute), so
-// |y - z| <= sqrt(hi^2 - lo^2).
+// Where the point y of a convex set T is at |x - y| = hi from x, and every point of T is at least
+// lo away, the closest point z satisfies |x-y|^2 >= |x-z|^2 + |z-y|^2 (the angle at z is not
+// acute), so |y - z| <= sqrt(hi^2 - lo^2).
 double ProjectionError(double hi, double lo) {
   lo = std::max(lo, 0.0);
   return std::sqrt(std::max(0.0, (hi - lo) * (hi + lo))) * (1 + 8 * kUnit);
@@ -109,20 +110,28 @@ Vector3d CoreSupport(const Convex& s, const Vector3d& n) {
 
 PointProjection ProjectPoint(const Convex& s, const Vector3d& x) {
   PointProjection p;
-  // R is within 8 u of a rotation for the obstacles this is used on: x - c, turned, is off by at most
-  // 16 u (|x| + |c|), a clamped or scaled vector by as much, and the way back by 8 u more of it.
+  // R is within 8 u of a rotation for the obstacles this is used on: x - c, turned, is off by at
+  // most 16 u (|x| + |c|), a clamped or scaled vector by as much, and the way back by 8 u more of
+  // it.
   p.distance_error = s.error + 96 * kUnit * x.norm();
   p.y_error = p.distance_error;
   switch (s.kind) {
-    case CoreKind::kBox: ProjectOnBox(s, x, &p); break;
-    case CoreKind::kCylinder: ProjectOnCylinder(s, x, &p); break;
-    case CoreKind::kPoints: ProjectOnPoints(s, x, &p); break;
+    case CoreKind::kBox:
+      ProjectOnBox(s, x, &p);
+      break;
+    case CoreKind::kCylinder:
+      ProjectOnCylinder(s, x, &p);
+      break;
+    case CoreKind::kPoints:
+      ProjectOnPoints(s, x, &p);
+      break;
   }
   return p;
 }
 
 // Ericson, Real-Time Collision Detection [2005], 5.1.5: the region of the plane the point is in.
-// Whatever region is chosen, the answer is a point of the triangle and the bounds are computed from it.
+// Whatever region is chosen, the answer is a point of the triangle and the bounds are computed from
+// it.
 static Vector3d ClosestOnTriangle(const Vector3d& a, const Vector3d& b, const Vector3d& c,
                                   const Vector3d& x) {
   const Vector3d ab = b - a, ac = c - a, ax = x - a, bx = x - b, cx = x - c;
@@ -131,13 +140,13 @@ static Vector3d ClosestOnTriangle(const Vector3d& a, const Vector3d& b, const Ve
   const double d3 = ab.dot(bx), d4 = ac.dot(bx);
   if (d3 >= 0 && d4 <= d3) return b;
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0 && d1 > d3) return a + d1 / (d1 - d3) * ab;
   const double d5 = ab.dot(cx), d6 = ac.dot(cx);
   if (d6 >= 0 && d5 <= d6) return c;
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0 && d2 > d6) return a + d2 / (d2 - d6) * ac;
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && (d4 - d3) + (d5 - d6) > 0) {
     return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
   }
   const double sum = va + vb + vc;
@@ -145,19 +154,41 @@ static Vector3d ClosestOnTriangle(const Vector3d& a, const Vector3d& b, const Ve
   return a + vb / sum * ab + vc / sum * ac;
 }
 
+static Vector3d ClosestOnSegment(const Vector3d& a, const Vector3d& b, const Vector3d& x) {
+  const Vector3d ab = b - a;
+  const double along = ab.dot(x - a), squared = ab.squaredNorm();
+  if (!(along > 0)) return a;
+  return along < squared ? Vector3d(a + along / squared * ab) : b;
+}
+
+// Distance, direction and lower bound of one candidate for the closest point of the triangle.
+static double Bound(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& x,
+                    PointProjection* p) {
+  p->distance = (x - p->y).norm();
+  p->n = p->distance > 0 ? Vector3d((x - p->y) / p->distance) : Vector3d(Vector3d::UnitZ());
+  return std::max(0.0, p->n.dot(x - a) - std::max({0.0, p->n.dot(b - a), p->n.dot(c - a)}));
+}
+
 PointProjection ProjectPoint(const Vector3d& a, const Vector3d& b, const Vector3d& c, double error,
                              const Vector3d& x) {
   PointProjection p;
   p.y = ClosestOnTriangle(a, b, c, x);
-  const double hi = (x - p.y).norm();
-  p.distance = hi;
-  p.n = hi > 0 ? Vector3d((x - p.y) / hi) : Vector3d(Vector3d::UnitZ());
-  // y is a combination of corners with weights in [0, 1] that are rounded, 16 u of the corners' size.
-  p.distance_error = error + 96 * kUnit * x.norm();
-  const double lo =
-      std::max(0.0, p.n.dot(x - a) - std::max({0.0, p.n.dot(b - a), p.n.dot(c - a)}));
-  p.distance_error += std::abs(hi - lo);
-  p.y_error = p.distance_error + ProjectionError(hi + p.distance_error, lo - p.distance_error);
+  double lo = Bound(a, b, c, x, &p);
+  if (p.distance - lo > 1e-13) {  // A sliver may have led to the wrong region: ask its edges.
+    for (const Vector3d& y :
+         {ClosestOnSegment(a, b, x), ClosestOnSegment(b, c, x), ClosestOnSegment(c, a, x)}) {
+      PointProjection other;
+      other.y = y;
+      const double bound = Bound(a, b, c, x, &other);
+      lo = std::max(lo, bound);
+      if (other.distance < p.distance) p = other;
+    }
+  }
+  // y is a combination of corners with weights in [0, 1] that are rounded, 16 u of the corners'
+  // size.
+  p.distance_error = error + 96 * kUnit * x.norm() + std::abs(p.distance - lo);
+  p.y_error =
+      p.distance_error + ProjectionError(p.distance + p.distance_error, lo - p.distance_error);
   return p;
 }
 

@@ -17,8 +17,8 @@ enum class CoreKind : unsigned char {
   kPoints     ///< convex hull of c + R points[i]
 };
 
-/** A convex set placed in W, a plain view. Whatever the kind, the box (c, R, half) contains the core,
- so that tests on boxes are sound for all kinds.
+/** A convex set placed in W, a plain view. Whatever the kind, the box (c, R, half) contains the
+ core, so that tests on boxes are sound for all kinds.
 
  The numbers are taken as exact: the set they describe differs from the real one by at most `error`
  (Hausdorff distance), a bound that also covers the rounding of everything computed from them here:
@@ -45,17 +45,18 @@ struct Convex {
     within u of itself, hence a point of the set within (sqrt3 + 3) u L < 5 u L.
  3. Rounding of the placement: components of R c + p within gamma_4 (|R||c| + |p|), in norm
     4.1 u (sqrt3 |c_B| + |p|) <= 4.1 u (2.8 L + |c_W|) as |p| <= |c_W| + |c_B|(1 + eps); entries of
-    R R within gamma_3 (rows and columns are unit up to rounding), in Frobenius norm 9.1 u, on a point
-    9.1 u reach. Together below 21 u L + 5 u |c_W|.
+    R R within gamma_3 (rows and columns are unit up to rounding), in Frobenius norm 9.1 u, on a
+ point 9.1 u reach. Together below 21 u L + 5 u |c_W|.
  4. Evaluations (|n| <= 1.01). n.(c_a - c_b): 4.1 u |n| (|c_a| + |c_b|). The support of a box:
-    each n.a_i within gamma_3, times h_i, summed: 8 u sum h_i |n.a_i| <= 14 u reach; of a cylinder the
-    same with one square root; of points: gamma_7 reach for (R^T n).v, whose orthogonality defect is in
-    the placement since the point taken is c + R v. The ball adds 3 u radius. Sums of these terms:
-    5 u of their magnitudes. Together below 10 u |c_W| + 30 u L. A convex combination of at most four
-    such points with weights that sum to 1 within 8 u: within 24 u (|c_W| + L).
+    each n.a_i within gamma_3, times h_i, summed: 8 u sum h_i |n.a_i| <= 14 u reach; of a cylinder
+ the same with one square root; of points: gamma_7 reach for (R^T n).v, whose orthogonality defect
+ is in the placement since the point taken is c + R v. The ball adds 3 u radius. Sums of these
+ terms: 5 u of their magnitudes. Together below 10 u |c_W| + 30 u L. A convex combination of at most
+ four such points with weights that sum to 1 within 8 u: within 24 u (|c_W| + L).
  5. Dividing a gap by |n| with |n| = 1 within 4 u: 4 u (|c_a| + |c_b| + ...).
  Items 2-5 sum to less than 96 u (L + |c_W|), the factor used. */
-inline double PlacementError(double error_R, double error_p, double L, double distance_from_origin) {
+inline double PlacementError(double error_R, double error_p, double L,
+                             double distance_from_origin) {
   return error_R * L + error_p + 96 * kUnit * (L + distance_from_origin);
 }
 
@@ -91,9 +92,9 @@ inline Eigen::Vector3d InnerPoint(const Convex& s) {
 
 /** Where a point stands to a set. */
 struct PointProjection {
-  Eigen::Vector3d y = Eigen::Vector3d::Zero();  ///< closest point of the set's boundary
-  Eigen::Vector3d n = Eigen::Vector3d::UnitZ(); ///< unit, outward: (x - y)/|x - y| outside
-  double distance = 0;   ///< signed, negative inside
+  Eigen::Vector3d y = Eigen::Vector3d::Zero();   ///< closest point of the set's boundary
+  Eigen::Vector3d n = Eigen::Vector3d::UnitZ();  ///< unit, outward: (x - y)/|x - y| outside
+  double distance = 0;                           ///< signed, negative inside
   double distance_error = 0;  ///< bound on the error of `distance`, displacement of x not included
   double y_error = 0;         ///< likewise for y, where x is outside
 };
@@ -111,8 +112,8 @@ PointProjection ProjectPoint(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
  kCylinder sets; false where nothing is left of the set or the kind is kPoints. */
 bool ClampInto(const Convex& s, double margin, Eigen::Vector3d* x);
 
-/** A lower bound on the depth of x inside `s` as placed (rounding of this function is within s.error
- plus 32 u |x|); negative outside. For kBox and kCylinder sets. */
+/** A lower bound on the depth of x inside `s` as placed (rounding of this function is within
+ s.error plus 32 u |x|); negative outside. For kBox and kCylinder sets. */
 double DepthInside(const Convex& s, const Eigen::Vector3d& x);
 
 }  // namespace cguide::numeric

@@ -1,9 +1,9 @@
-#include "cguide/numeric/fcl_distance_internal.h"
-
 #include <fcl/fcl.h>
 
 #include <memory>
 #include <vector>
+
+#include "cguide/numeric/fcl_distance_internal.h"
 
 namespace cguide::numeric {
 namespace {

@@ -7,8 +7,8 @@
 
 namespace cguide::numeric {
 
-/** FCL's nearest points of two convex sets (libccd solver, distance_tolerance 1e-12, in W). A proposal
- from a peer, never evidence: FCL 0.7 returns sqrt 3 for sqrt 2 on ordinary boxes. */
+/** FCL's nearest points of two convex sets (libccd solver, distance_tolerance 1e-12, in W). A
+ proposal from a peer, never evidence: FCL 0.7 returns sqrt 3 for sqrt 2 on ordinary boxes. */
 struct FclPoints {
   Eigen::Vector3d a;
   Eigen::Vector3d b;

@@ -1,10 +1,9 @@
-#include "cguide/numeric/geometry_internal.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "cguide/exact/convex_hull.h"
 #include "cguide/exact/core/rational.h"
+#include "cguide/numeric/geometry_internal.h"
 
 namespace cguide::numeric {
 namespace {
@@ -64,9 +63,9 @@ std::vector<ExactPose> LinkPoses(const Robot& robot) {
   std::vector<ExactPose> poses(robot.links.size());
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     const bool starts_body = i == 0 || robot.joints[i - 1].type != JointType::kFixed;
-    poses[i] = starts_body ? ToExact(Pose{})
-                           : Compose(poses[robot.joints[i - 1].parent],
-                                     ToExact(robot.joints[i - 1].X_PJ));
+    poses[i] = starts_body
+                   ? ToExact(Pose{})
+                   : Compose(poses[robot.joints[i - 1].parent], ToExact(robot.joints[i - 1].X_PJ));
   }
   return poses;
 }

@@ -62,18 +62,18 @@ class Geometry {
 
   int num_bodies = 0;
   int num_objects = 0;
-  std::vector<BodyShape> shapes;    ///< by body
-  std::vector<int> body_begin;      ///< shapes of body b: [body_begin[b], body_begin[b + 1])
+  std::vector<BodyShape> shapes;  ///< by body
+  std::vector<int> body_begin;    ///< shapes of body b: [body_begin[b], body_begin[b + 1])
   std::vector<BodyBall> body_balls;
-  std::vector<ObstaclePiece> pieces;  ///< by object
-  std::vector<int> object_begin;      ///< likewise
+  std::vector<ObstaclePiece> pieces;            ///< by object
+  std::vector<int> object_begin;                ///< likewise
   std::vector<std::pair<int, int>> self_pairs;  ///< of bodies that bear shapes
-  std::vector<int> self_hint_begin;   ///< first hint of each self pair
-  int num_hints = 0;                  ///< shapes x pieces, then the shape pairs of the self pairs
-  std::vector<char> may_touch;        ///< body * num_objects + object
+  std::vector<int> self_hint_begin;             ///< first hint of each self pair
+  int num_hints = 0;            ///< shapes x pieces, then the shape pairs of the self pairs
+  std::vector<char> may_touch;  ///< body * num_objects + object
   double skin = 0;
-  std::vector<BodySites> sites;       ///< bodies allowed by ContactRules::bodies that have sites
-  std::vector<int> contact_bodies;    ///< ContactRules::bodies that bear shapes
+  std::vector<BodySites> sites;     ///< bodies allowed by ContactRules::bodies that have sites
+  std::vector<int> contact_bodies;  ///< ContactRules::bodies that bear shapes
 
   double PairSkin(int body, int object) const {
     return may_touch[body * num_objects + object] ? skin : 0.0;
@@ -90,12 +90,11 @@ inline double HalfspaceError(const ObstaclePiece& piece, double norm_x) {
   return 16 * kUnit * (norm_x + std::abs(piece.offset));
 }
 
-/** Whether a ball keeps farther than its radius from the piece. The radius holds the ball's errors; the
- distance computed here is within 96 u |center| + piece.convex.error. */
+/** Whether a ball keeps farther than its radius from the piece. The radius holds the ball's errors;
+ the distance computed here is within 96 u |center| + piece.convex.error. */
 inline bool BallApart(const Eigen::Vector3d& center, double radius, const ObstaclePiece& piece) {
   if (piece.kind == PieceKind::kHalfspace) {
-    return HalfspaceDistance(piece, center) >
-           radius + HalfspaceError(piece, center.lpNorm<1>());
+    return HalfspaceDistance(piece, center) > radius + HalfspaceError(piece, center.lpNorm<1>());
   }
   const Convex& s = piece.convex;
   const Eigen::Vector3d l = s.R.transpose() * (center - s.c);

@@ -1,7 +1,7 @@
-#include "cguide/numeric/gjk_internal.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
+
+#include "cguide/numeric/gjk_internal.h"
 
 namespace cguide::numeric {
 namespace {

@@ -20,9 +20,9 @@ struct GjkResult {
   Eigen::Vector3d v = Eigen::Vector3d::UnitX();  ///< near-closest point of A - B to 0, from B to A
   Eigen::Vector3d a = Eigen::Vector3d::Zero();   ///< its points, relative to c_A and c_B
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  bool overlap = false;  ///< the last simplex holds the origin up to rounding
+  bool overlap = false;    ///< the last simplex holds the origin up to rounding
   bool separated = false;  ///< stopped early: the bound asked for was reached along `v`
-  int size = 0;          ///< of the simplex
+  int size = 0;            ///< of the simplex
   DifferencePoint simplex[4];
   int iterations = 0;
 };

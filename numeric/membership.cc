@@ -15,16 +15,20 @@ Membership TestContact(const std::vector<Contact>& contacts) {
 
 }  // namespace
 
-StabilityAnswer TestPlacedStability(const World& world, GuideWorkspace* workspace) {
-  FindContacts(world, &workspace->geometry, &workspace->contacts);
+StabilityQuery PlacedQuery(const World& world, const GuideWorkspace& workspace) {
   StabilityQuery query;
-  query.contacts = workspace->contacts;
-  query.com_W = workspace->geometry.state.com_W;
-  query.com_error = workspace->geometry.state.com_error;
+  query.contacts = workspace.contacts;
+  query.com_W = workspace.geometry.state.com_W;
+  query.com_error = workspace.geometry.state.com_error;
   query.mass = world.tree().mass;
   query.gravity_W = world.model().gravity;
   query.generators = world.model().contact.generators;
-  return TryStability(query, &workspace->stability);
+  return query;
+}
+
+StabilityAnswer TestPlacedStability(const World& world, GuideWorkspace* workspace) {
+  FindContacts(world, &workspace->geometry, &workspace->contacts);
+  return TryStability(PlacedQuery(world, *workspace), &workspace->stability);
 }
 
 Membership TestConfiguration(const World& world, const Configuration& q, Space space,

@@ -32,6 +32,9 @@ struct GuideWorkspace {
   std::vector<Contact> contacts;
 };
 
+/** The question about stability that workspace->contacts and the configuration placed last pose. */
+StabilityQuery PlacedQuery(const World& world, const GuideWorkspace& workspace);
+
 /** Static stability of the configuration placed last; fills workspace->contacts. */
 StabilityAnswer TestPlacedStability(const World& world, GuideWorkspace* workspace);
 

@@ -1,7 +1,7 @@
-#include "cguide/numeric/mesh_internal.h"
-
 #include <algorithm>
 #include <numeric>
+
+#include "cguide/numeric/mesh_internal.h"
 
 namespace cguide::numeric {
 namespace {
@@ -55,8 +55,8 @@ void Split(Mesh* mesh, int index, int begin, int end) {
   Split(mesh, left + 1, middle, end);
 }
 
-// Sign of the orientation of (a, b, x) in the plane of coordinates i, j; 0 where rounding could matter.
-// Each difference has a relative error u, each product two more, their difference one more:
+// Sign of the orientation of (a, b, x) in the plane of coordinates i, j; 0 where rounding could
+// matter. Each difference has a relative error u, each product two more, their difference one more:
 // |error| <= 4.1 u (|p| + |q|) with p, q the computed products (Shewchuk 1997 uses 3 u + O(u^2)).
 int Orientation(const Vector3d& a, const Vector3d& b, const Vector3d& x, int i, int j) {
   const double p = (b[i] - a[i]) * (x[j] - a[j]), q = (b[j] - a[j]) * (x[i] - a[i]);
@@ -77,16 +77,18 @@ int Side(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d
   const auto m1 = minor(r[0], p[1], r[1], p[0]);
   const auto m2 = minor(p[0], q[1], p[1], q[0]);
   const double det = p[2] * m0.first + q[2] * m1.first + r[2] * m2.first;
-  const double bound = 16 * kUnit * (std::abs(p[2]) * m0.second + std::abs(q[2]) * m1.second +
-                                     std::abs(r[2]) * m2.second) + 1e-300;
+  const double bound =
+      16 * kUnit *
+          (std::abs(p[2]) * m0.second + std::abs(q[2]) * m1.second + std::abs(r[2]) * m2.second) +
+      1e-300;
   if (det > bound) return 1;
   if (det < -bound) return -1;
   return 0;
 }
 
-// Signed crossing of the ray x + t e_k, t > 0, with one triangle; nothing where an orientation is in
-// doubt. i, j, k is an even permutation, so a positive projected orientation means that the normal
-// has a positive k component and the ray leaves through the triangle: +1.
+// Signed crossing of the ray x + t e_k, t > 0, with one triangle; nothing where an orientation is
+// in doubt. i, j, k is an even permutation, so a positive projected orientation means that the
+// normal has a positive k component and the ray leaves through the triangle: +1.
 std::optional<int> Crossing(const Vector3d& a, const Vector3d& b, const Vector3d& c,
                             const Vector3d& x, int k) {
   const int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -99,7 +101,8 @@ std::optional<int> Crossing(const Vector3d& a, const Vector3d& b, const Vector3d
   const bool positive = o0 > 0 || o1 > 0 || o2 > 0, negative = o0 < 0 || o1 < 0 || o2 < 0;
   if (positive && negative) return 0;  // Outside by two edges whatever the third is.
   if (o0 == 0 || o1 == 0 || o2 == 0) return std::nullopt;
-  // det(a - x, b - x, c - x) > 0 iff x is behind the triangle, that is on the side its normal leaves.
+  // det(a - x, b - x, c - x) > 0 iff x is behind the triangle, that is on the side its normal
+  // leaves.
   const int side = Side(a, b, c, x);
   if (side == 0) return std::nullopt;
   if ((side > 0) != positive) return 0;  // Crossed behind the ray's origin.

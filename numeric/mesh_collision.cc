@@ -35,14 +35,14 @@ Verdict DecideMesh(const Convex& shape, const Mesh& mesh, double skin, StageCoun
   });
   if (verdict != Verdict::kHolds || !mesh.solid) return verdict;
   // The shape keeps clear of every triangle (by more than all errors, or may dip into them by the
-  // skin), so it is on one side of the surface and one of its points tells which. With a skin that point
-  // must be farther from the surface than the skin, else nothing is decided.
+  // skin), so it is on one side of the surface and one of its points tells which. With a skin that
+  // point must be farther from the surface than the skin, else nothing is decided.
   const Vector3d x = InnerPoint(shape);
   if (skin > 0) {
     bool clear = true;
     VisitNear(mesh, x, 2 * skin, [&](int t) {
-      const double d = ProjectPoint(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2), 0,
-                                    x).distance;
+      const double d =
+          ProjectPoint(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2), 0, x).distance;
       clear = d > 2 * skin + shape.error + mesh.error;
       return clear;
     });

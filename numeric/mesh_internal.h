@@ -22,8 +22,8 @@ struct MeshNode {
 struct Mesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<int, 3>> triangles;
-  std::vector<int> order;        ///< triangles in the order of the leaves
-  std::vector<MeshNode> nodes;   ///< node 0 is the root
+  std::vector<int> order;       ///< triangles in the order of the leaves
+  std::vector<MeshNode> nodes;  ///< node 0 is the root
   bool solid = false;
   double error = 0;
 
@@ -67,8 +67,8 @@ bool VisitNear(const Mesh& mesh, const Eigen::Vector3d& x, double radius, Visit&
   return true;
 }
 
-/** Calls visit(triangle) for triangles whose box is nearer to x than radius(), which may shrink as the
- walk goes on; the nearer child first. */
+/** Calls visit(triangle) for triangles whose box is nearer to x than radius(), which may shrink as
+ the walk goes on; the nearer child first. */
 template <typename Radius, typename Visit>
 void VisitByDistance(const Mesh& mesh, const Eigen::Vector3d& x, Radius&& radius, Visit&& visit) {
   if (mesh.nodes.empty()) return;
@@ -101,8 +101,8 @@ Convex TriangleConvex(const Mesh& mesh, int triangle, std::array<Eigen::Vector3d
 
 /** Winding number of a closed oriented mesh about x, or nothing where rounding could matter: counts
  signed crossings of an axis-parallel ray, every orientation filtered by its error bound. Displacing
- every corner by mesh.error and x by `error` does not change the answer provided that x keeps farther
- than their sum from the mesh, which the caller has to know. */
+ every corner by mesh.error and x by `error` does not change the answer provided that x keeps
+ farther than their sum from the mesh, which the caller has to know. */
 std::optional<int> WindingNumber(const Mesh& mesh, const Eigen::Vector3d& x);
 
 }  // namespace cguide::numeric

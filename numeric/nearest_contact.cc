@@ -23,8 +23,8 @@ void AddContact(int body, int object, double friction, double epsilon, double sk
   contact.y_W = d.b_W;
   contact.n_W = d.n_W;
   contact.distance = d.overlap ? -d.depth : d.hi;
-  // Of parallel faces any pair of opposite points is a closest pair: the points are one choice, within
-  // the enclosure's width of being closest.
+  // Of parallel faces any pair of opposite points is a closest pair: the points are one choice,
+  // within the enclosure's width of being closest.
   contact.error = std::max(0.0, d.hi - d.lo);
   if (d.lo >= epsilon || (d.overlap && d.depth >= skin)) return;
   contact.certain = d.overlap ? d.depth < skin : d.hi < epsilon && (d.lo > 0 || skin > 0);
@@ -40,11 +40,11 @@ void FindNearestContacts(const World& world, Workspace* workspace, std::vector<C
     int best_object = -1;
     DirectedClearance best;
     for (int object = 0; object < g.num_objects; ++object) {
-      const DirectedClearance one =
-          BodyClearance(world, {body, object, false}, epsilon, workspace);
+      const DirectedClearance one = BodyClearance(world, {body, object, false}, epsilon, workspace);
       const double friction = world.model().objects[object].friction;
-      if (one.lo >= epsilon || (best_object >= 0 &&
-                                !Nearer(one, friction, best, world.model().objects[best_object].friction))) {
+      if (one.lo >= epsilon ||
+          (best_object >= 0 &&
+           !Nearer(one, friction, best, world.model().objects[best_object].friction))) {
         continue;
       }
       best = one;

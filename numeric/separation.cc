@@ -1,9 +1,8 @@
-#include "cguide/numeric/separation_internal.h"
-
 #include <algorithm>
 
 #include "cguide/numeric/fcl_distance_internal.h"
 #include "cguide/numeric/gjk_internal.h"
+#include "cguide/numeric/separation_internal.h"
 
 namespace cguide::numeric {
 namespace {
@@ -53,7 +52,8 @@ Verdict DecideByDistance(const Convex& a, const Convex& b, double skin, const Ve
       ++counts->meets;
       return Verdict::kFails;
     }
-    if (const auto direction = FclDirection(a, b); direction && Certifies(a, b, *direction, error - skin)) {
+    if (const auto direction = FclDirection(a, b);
+        direction && Certifies(a, b, *direction, error - skin)) {
       Remember(a, *direction, hint);
       ++counts->library;
       return Verdict::kHolds;
@@ -122,15 +122,17 @@ BoxAxis BestBoxAxis(const Convex& a, const Convex& b) {
 
 bool ProveCommonPoint(const Convex& a, const Convex& b, double depth) {
   if (a.kind == CoreKind::kPoints || b.kind == CoreKind::kPoints) return false;
-  // A ball of radius `depth` must be in one of the two, of which the point proven is the centre: the
-  // smaller set gives the point, the other the ball.
+  // A ball of radius `depth` must be in one of the two, of which the point proven is the centre:
+  // the smaller set gives the point, the other the ball.
   const double rounding = 64 * kUnit * (a.c.norm() + a.reach + b.c.norm() + b.reach);
   const double error_a = a.error + rounding, error_b = b.error + rounding;
   for (const bool ball_in_a : {false, true}) {
-    const double need_a = error_a + (ball_in_a ? depth : 0), need_b = error_b + (ball_in_a ? 0 : depth);
+    const double need_a = error_a + (ball_in_a ? depth : 0),
+                 need_b = error_b + (ball_in_a ? 0 : depth);
     Vector3d x = a.reach < b.reach ? a.c : b.c;
     double margin = 0;
-    // Aiming deeper than needed makes the iteration end; where the overlap is thin it aims less deep.
+    // Aiming deeper than needed makes the iteration end; where the overlap is thin it aims less
+    // deep.
     for (margin = 0.25 * std::min(a.reach, b.reach); margin > 1e-13; margin *= 0.1) {
       for (int i = 0; i < 8; ++i) {
         if (!ClampInto(a, need_a + margin, &x) || !ClampInto(b, need_b + margin, &x)) break;
@@ -151,21 +153,25 @@ bool ProveTetrahedron(const GjkResult& gjk, double needed) {
     const double length = n.norm();
     const double origin = -n.dot(p), apex = n.dot(t - p);
     if (origin * apex <= 0) return false;
-    // |n.p| is off by at most 16 u times |q-p||r-p||p|, covered by asking for twice of what is needed
-    // unless the face is a sliver.
-    const double rounding = 32 * kUnit * (q - p).norm() * (r - p).norm() * (p.norm() + (t - p).norm());
-    if (!(std::abs(origin) > needed * length + rounding) || !(std::abs(apex) > rounding)) return false;
+    // |n.p| is off by at most 16 u times |q-p||r-p||p|, covered by asking for twice of what is
+    // needed unless the face is a sliver.
+    const double rounding =
+        32 * kUnit * (q - p).norm() * (r - p).norm() * (p.norm() + (t - p).norm());
+    if (!(std::abs(origin) > needed * length + rounding) || !(std::abs(apex) > rounding))
+      return false;
   }
   return true;
 }
 
 bool ProveOctahedron(const Convex& a, const Convex& b, double needed) {
   // Rotations without symmetry, so that corners of aligned boxes do not tie.
-  static constexpr double kFrames[4][4] = {
-      {0.93, 0.21, -0.17, 0.24}, {0.61, -0.42, 0.57, 0.36}, {0.34, 0.71, 0.28, -0.55},
-      {0.48, 0.13, 0.79, 0.36}};
+  static constexpr double kFrames[4][4] = {{0.93, 0.21, -0.17, 0.24},
+                                           {0.61, -0.42, 0.57, 0.36},
+                                           {0.34, 0.71, 0.28, -0.55},
+                                           {0.48, 0.13, 0.79, 0.36}};
   for (const auto& q : kFrames) {
-    const Matrix3d frame = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+    const Matrix3d frame =
+        Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
     Vector3d w[3][2];
     for (int i = 0; i < 3; ++i) {
       for (const int sign : {0, 1}) {
@@ -198,7 +204,8 @@ Verdict DecideConvex(const Convex& a, const Convex& b, double skin, SeparationHi
   SeparationHint found;
   found.code = static_cast<signed char>(axis.code);
   const Vector3d n = HintDirection(a, b, found);
-  if (axis.gap > -skin && n.dot(a.c - b.c) - BoxExtent(a, n) - BoxExtent(b, n) - a.radius - b.radius > needed) {
+  if (axis.gap > -skin &&
+      n.dot(a.c - b.c) - BoxExtent(a, n) - BoxExtent(b, n) - a.radius - b.radius > needed) {
     *hint = found;
     ++counts->boxes;
     return Verdict::kHolds;

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cguide/numeric/stability_contacts_internal.h"
+#include "cguide/numeric/stability_simplex_internal.h"
 
 // Nothing in this file is trusted: it proposes, the certificates decide. The constants below steer
 // speed and the share of decided queries, never a verdict.
@@ -15,6 +15,7 @@
 // until the answer is clear. Columns are priced in closed form: over the cone of contact i, u.n =
 // 1,
 //   max y.a(u) = g.n + mu |g_t|,  g = y_f + y_m x r_i,  at u = n + mu g_t/|g_t|.
+// The margins add free columns: displacements of the centre of mass.
 namespace cguide::numeric {
 namespace {
 
@@ -24,48 +25,6 @@ constexpr double kInSpanTolerance = 1e-13;
 constexpr double kRoom[] = {0x1p-8, 0x1p-17, 0x1p-26, 0x1p-33, 0x1p-37, 0x1p-40, 0x1p-42};  // s
 constexpr int kMaxPivots = 120;
 constexpr double kBaseWeight[6] = {1, 0.8, 1.2, 0.9, 1.1, 0.7};
-
-class Simplex {
- public:
-  Simplex(const ScaledContacts& contacts, int count, Balance* balance)
-      : c_(contacts), count_(count), balance_(balance) {}
-
-  int pivots() const { return pivots_; }
-  const Vector6d& y() const { return y_; }
-  Proposal Run();
-
- private:
-  enum class Kind { kContact, kArtificial, kDirection };
-  enum class Step { kMoved, kOptimal, kStuck };
-  struct Price {
-    int contact = -1;
-    double value = 0;
-  };
-
-  void Crash();
-  bool Start();
-  Step Iterate(double s);
-  void ComputeMultipliers(double s);
-  Price DearestContact(const Vector6d& y) const;
-  Price LargestSupport(const Vector6d& rho) const;
-  Generator MakeGenerator(int contact, const Vector6d& y) const;
-  int ChooseLeaving(const Vector6d& alpha) const;
-  void Pivot(int row, const Vector6d& alpha);
-  bool TryInterior();
-
-  const ScaledContacts& c_;
-  const int count_;
-  Balance* const balance_;
-  Matrix6d inverse_ = Matrix6d::Identity();  // of the current basis
-  Generator column_[6];
-  Kind kind_[6];
-  Vector6d x_ = Vector6d::Zero();  // basic variables
-  int direction_row_ = -1;         // where tau is basic
-  bool full_rank_ = true;
-  bool in_span_ = true;
-  Vector6d y_ = Vector6d::Zero();
-  int pivots_ = 0;
-};
 
 // Prices in blocks, so that the arithmetic is a plain loop that compilers vectorise.
 constexpr int kBlock = 32;
@@ -90,6 +49,12 @@ void PriceBlock(const ScaledContacts& c, int first, int size, const Vector6d& y,
     across[i] = mu[i] * std::sqrt(tx * tx + ty * ty + tz * tz);
   }
 }
+
+Eigen::Vector3d Cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+}  // namespace
 
 Simplex::Price Simplex::DearestContact(const Vector6d& y) const {
   Price best;
@@ -123,14 +88,10 @@ Simplex::Price Simplex::LargestSupport(const Vector6d& rho) const {
 
 Generator Simplex::MakeGenerator(int contact, const Vector6d& y) const {
   const Eigen::Vector3d r = c_.arm(contact), n = c_.normal(contact);
-  const auto cross = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return Eigen::Vector3d(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                           a[0] * b[1] - a[1] * b[0]);
-  };
   Generator generator;
   generator.contact = contact;
   generator.u = n;
-  const Eigen::Vector3d g = y.head<3>() + cross(y.tail<3>(), r);
+  const Eigen::Vector3d g = y.head<3>() + Cross(y.tail<3>(), r);
   Eigen::Vector3d t = g - g.dot(n) * n;
   const double length = t.norm();
   if (c_.mu[contact] > 0 && length > 0) {
@@ -140,7 +101,7 @@ Generator Simplex::MakeGenerator(int contact, const Vector6d& y) const {
     if (again > 0.5) generator.u += (c_.mu[contact] / again) * t;
   }
   generator.wrench.head<3>() = generator.u;
-  generator.wrench.tail<3>() = cross(r, generator.u);
+  generator.wrench.tail<3>() = Cross(r, generator.u);
   return generator;
 }
 
@@ -214,6 +175,7 @@ void Simplex::ComputeMultipliers(double s) {
     cost[k] = s;
     if (kind_[k] == Kind::kArtificial) cost[k] = in_span_ ? 0 : -1;
     if (kind_[k] == Kind::kDirection) cost[k] = in_span_ ? 1 : 8 * s;
+    if (kind_[k] == Kind::kShift) cost[k] = 0;
   }
   y_ = -(inverse_.transpose() * cost);
 }
@@ -223,7 +185,7 @@ int Simplex::ChooseLeaving(const Vector6d& alpha) const {
   int row = -1;
   double ratio = INFINITY;
   for (int k = 0; k < 6; ++k) {
-    if (k == direction_row_) continue;
+    if (IsFree(kind_[k])) continue;
     double divisor = alpha[k];
     if (kind_[k] == Kind::kArtificial && x_[k] <= kInSpanTolerance) divisor = std::abs(divisor);
     if (!(divisor > kPivotTolerance)) continue;
@@ -236,34 +198,109 @@ int Simplex::ChooseLeaving(const Vector6d& alpha) const {
   return row;
 }
 
-Simplex::Step Simplex::Iterate(double s) {
-  ComputeMultipliers(s);
-  const Price best = DearestContact(y_);
-  if (!(best.value > -0.5 * s)) return Step::kOptimal;
-  const Generator entering = MakeGenerator(best.contact, y_);
+// Brings a column in; false where nothing limits it, and then nothing has changed.
+bool Simplex::Enter(const Generator& entering, Kind kind) {
   const Vector6d alpha = inverse_ * entering.wrench;
   const int row = ChooseLeaving(alpha);
   if (row < 0) {
-    // Nothing stops the entering weight. If tau rises with it, -a is in the cone, which is then the
-    // whole space: stop where tau is comfortable. Else the cone has a line and no s > 0 will do.
-    const double rate = -alpha[direction_row_];
-    if (!(rate > kPivotTolerance)) return Step::kStuck;
-    const double theta = (1 + std::abs(x_[direction_row_])) / rate;
-    x_ -= theta * alpha;
-    balance_->extra[5] = entering;
-    balance_->extra_weight[5] = theta;
-    return Step::kMoved;
+    ray_ = alpha;
+    return false;
   }
   const double theta = std::max(0.0, x_[row]) / alpha[row];
   for (int k = 0; k < 6; ++k) {
     x_[k] -= theta * alpha[k];
-    if (k != direction_row_) x_[k] = std::max(0.0, x_[k]);
+    if (!IsFree(kind_[k])) x_[k] = std::max(0.0, x_[k]);
   }
   Pivot(row, alpha);
   column_[row] = entering;
-  kind_[row] = Kind::kContact;
+  kind_[row] = kind;
   x_[row] = theta;
-  return Step::kMoved;
+  last_row_ = row;
+  return true;
+}
+
+// Nothing stops the entering weight. If tau rises with it, -a is in the cone, which is then the
+// whole space: go where tau is comfortable. Else the cone has a line, and no s > 0 will do.
+Simplex::Step Simplex::FollowRay(const Generator& entering) {
+  const double rate = -ray_[direction_row_];
+  if (!(rate > kPivotTolerance)) return Step::kStuck;
+  const double theta = (1 + std::abs(x_[direction_row_])) / rate;
+  x_ -= theta * ray_;
+  balance_->extra[5] = entering;
+  balance_->extra_weight[5] = theta;
+  return Step::kUnbounded;
+}
+
+Simplex::Step Simplex::Iterate(double s) {
+  ComputeMultipliers(s);
+  const Price best = DearestContact(y_);
+  double shift_price = 0;
+  const int shift = DearestShift(&shift_price);
+  if (shift >= 0 && shift_price > std::max(0.5 * s, best.value)) return EnterShift(shift);
+  if (!(best.value > -0.5 * s)) return Step::kOptimal;
+  const Generator entering = MakeGenerator(best.contact, y_);
+  return Enter(entering, Kind::kContact) ? Step::kMoved : FollowRay(entering);
+}
+
+// A displacement delta of the centre of mass adds the moment delta x v_f to the wrench to be
+// supplied.
+Generator ShiftColumn(const ScaledContacts& c, const Eigen::Vector3d& delta) {
+  Generator column;
+  column.wrench.tail<3>() = -Cross(delta, c.v_f);
+  return column;
+}
+
+void Simplex::Free(const Eigen::Vector3d& d) { shift_[num_shifts_++].d = d; }
+
+int Simplex::DearestShift(double* price) const {
+  int best = -1;
+  for (int i = 0; i < num_shifts_; ++i) {
+    if (shift_[i].row >= 0) continue;
+    const double value = std::abs(y_.dot(ShiftColumn(c_, shift_[i].d).wrench));
+    if (value > *price) {
+      *price = value;
+      best = i;
+    }
+  }
+  return best;
+}
+
+Simplex::Step Simplex::EnterShift(int i) {
+  Shift& shift = shift_[i];
+  const double slope = y_.dot(ShiftColumn(c_, shift.d).wrench);
+  shift.sign = slope > 0 ? 1 : -1;
+  const Generator entering = ShiftColumn(c_, shift.sign * shift.d);
+  if (Enter(entering, Kind::kShift)) {
+    shift.row = last_row_;
+    return Step::kMoved;
+  }
+  const Step step = FollowRay(entering);
+  if (step == Step::kUnbounded) shift.value = balance_->extra_weight[5];
+  return step;
+}
+
+Eigen::Vector3d Simplex::displacement() const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < num_shifts_; ++i) {
+    sum +=
+        shift_[i].sign * (shift_[i].row >= 0 ? x_[shift_[i].row] : shift_[i].value) * shift_[i].d;
+  }
+  return sum;
+}
+
+// From now on the direction is a generator like others, with the weight tau >= 0.
+double Simplex::Shoot(const Eigen::Vector3d& d, double limit) {
+  constexpr double kPriceTolerance = 1e-12;
+  kind_[direction_row_] = Kind::kContact;
+  if (!Enter(ShiftColumn(c_, d), Kind::kShift)) return limit;
+  const int row = last_row_;
+  while (x_[row] < limit && pivots_ < 4 * kMaxPivots) {
+    y_ = -inverse_.row(row);
+    const Price best = DearestContact(y_);
+    if (!(best.value > kPriceTolerance)) break;
+    if (!Enter(MakeGenerator(best.contact, y_), Kind::kContact)) return limit;
+  }
+  return std::min(x_[row], limit);
 }
 
 bool Simplex::TryInterior() {
@@ -286,11 +323,15 @@ bool Simplex::TryInterior() {
   return ProveInterior(c_, balance_);
 }
 
-Proposal Simplex::Run() {
+bool Simplex::Prepare() {
   balance_->num_extra = 0;
   balance_->extra_weight[5] = 0;
   Crash();
-  if (!Start()) {  // no contact spans anything: only the cone {0} is left
+  return Start();
+}
+
+Proposal Simplex::Run() {
+  if (!Prepare()) {  // no contact spans anything: only the cone {0} is left
     y_ << c_.v_f, 0, 0, 0;
     return ProveOutside(c_, y_) ? Proposal::kOutside : Proposal::kNone;
   }
@@ -300,17 +341,17 @@ Proposal Simplex::Run() {
     while (step == Step::kMoved) {
       if (pivots_ >= kMaxPivots) return Proposal::kNone;
       step = Iterate(s);
-      if (step == Step::kMoved && TryInterior()) return Proposal::kInterior;
-      if (balance_->extra_weight[5] > 0) return Proposal::kNone;
+      if ((step == Step::kMoved || step == Step::kUnbounded) && TryInterior()) {
+        return Proposal::kInterior;
+      }
     }
+    if (step == Step::kUnbounded) return Proposal::kNone;
     if (step == Step::kOptimal && y_.head<3>().dot(c_.v_f) > 0 && ProveOutside(c_, y_)) {
       return Proposal::kOutside;
     }
   }
   return Proposal::kNone;
 }
-
-}  // namespace
 
 Proposal SolveStability(const ScaledContacts& contacts, int count, Balance* balance, Vector6d* y,
                         int* pivots) {

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/numeric/describe.h"
 
 namespace cguide::planner {
 namespace {
@@ -11,14 +12,6 @@ namespace {
 using numeric::Membership;
 using numeric::Obstruction;
 using numeric::World;
-
-std::string NameOf(const World& world, const numeric::Pair& pair) {
-  const Model& model = world.model();
-  const std::string body = "\"" + model.robot.bodies[pair.body].name + "\"";
-  const std::string other =
-      pair.self ? model.robot.bodies[pair.other].name : model.objects[pair.other].name;
-  return body + " and \"" + other + "\"";
-}
 
 std::string DescribeLimits(const World& world, const Configuration& q) {
   const auto names = ColumnNames(world.model().robot);
@@ -35,28 +28,17 @@ std::string DescribeLimits(const World& world, const Configuration& q) {
 
 std::string Describe(const World& world, const Configuration& q, const Membership& membership,
                      numeric::GuideWorkspace* workspace) {
+  if (membership.obstruction == Obstruction::kLimits) return DescribeLimits(world, q);
   std::ostringstream text;
-  switch (membership.obstruction) {
-    case Obstruction::kLimits:
-      return DescribeLimits(world, q);
-    case Obstruction::kCollision: {
-      const numeric::Clearance clearance =
-          numeric::PairClearance(world, membership.pair, 1.0, &workspace->geometry);
-      text << NameOf(world, membership.pair)
-           << (membership.verdict == Verdict::kFails ? " overlap" : " may touch");
-      if (clearance.depth > 0) text << " by about " << clearance.depth << " m";
-      return text.str();
-    }
-    case Obstruction::kNoContact:
-      return "no body is within the contact band of an obstacle";
-    case Obstruction::kUnstable:
-      text << "it is not statically stable with its " << workspace->contacts.size()
-           << " contact points";
-      return text.str();
-    case Obstruction::kNone:
-      break;
+  text << numeric::DescribeMembership(world.model(), membership);
+  if (membership.obstruction == Obstruction::kCollision) {
+    const double depth =
+        numeric::PairClearance(world, membership.pair, 1.0, &workspace->geometry).depth;
+    if (depth > 0) text << " by about " << 1000 * depth << " mm";
+  } else if (membership.obstruction == Obstruction::kUnstable) {
+    text << " with its " << workspace->contacts.size() << " contact points";
   }
-  return "it is in the space";
+  return text.str();
 }
 
 bool Near(const Configuration& a, const Configuration& b, const EndpointOptions& options) {

@@ -42,12 +42,12 @@ struct Violation {
   double s_last = 0;
   double s_worst = 0;
   int samples = 0;
-  /** kCollision: penetration (m). kUnstable: how far the centre of mass is, horizontally, from where
-   it would be supported (m), -1 where no position would be. Floats for people, not bounds. */
+  /** kCollision: penetration (m). kUnstable: how far the centre of mass is, horizontally, from
+   where it would be supported (m), -1 where no position would be. Floats for people, not bounds. */
   double depth = 0;
-  double length = 0;  ///< of the samples' stretch, each counted with one step (metric of path.h)
-  numeric::Pair pair;                    ///< kCollision
-  numeric::SeparatingWrench separator;   ///< kUnstable
+  double length = 0;   ///< of the samples' stretch, each counted with one step (metric of path.h)
+  numeric::Pair pair;  ///< kCollision
+  numeric::SeparatingWrench separator;  ///< kUnstable
 };
 
 struct SampledAuditOptions {
@@ -57,21 +57,21 @@ struct SampledAuditOptions {
   std::function<void(int done, int edges)> on_progress;  ///< called from one thread at a time
 };
 
-/** What a sampled audit saw. It says something about the samples and nothing about the motion between
- them. */
+/** What a sampled audit saw. It says something about the samples and nothing about the motion
+ between them. */
 struct SampledAudit {
   Verdict verdict = Verdict::kHolds;  ///< kFails if a sample provably leaves C_guide
   double step = 0;
   int edges = 0;
-  int edges_done = 0;       ///< fewer than `edges` where interrupted
+  int edges_done = 0;  ///< fewer than `edges` where interrupted
   long samples = 0;
-  double length = 0;        ///< of the path (metric of path.h)
-  StageCounts collision;    ///< pairs that needed their own answer count one by one
+  double length = 0;      ///< of the path (metric of path.h)
+  StageCounts collision;  ///< pairs that needed their own answer count one by one
   StageCounts stability;
-  Extreme clearance;        ///< smallest lower bound of a pair's distance (m)
-  Extreme contact_gap;      ///< largest distance of the nearest contact (m)
-  Extreme com_margin;       ///< smallest com_m (m)
-  Extreme force_margin;     ///< smallest force margin (no unit)
+  Extreme clearance;                  ///< smallest lower bound of a pair's distance (m)
+  Extreme contact_gap;                ///< largest distance of the nearest contact (m)
+  Extreme com_margin;                 ///< smallest com_m (m)
+  Extreme force_margin;               ///< smallest force margin (no unit)
   std::vector<Violation> violations;  ///< in the order of the path
 };
 

@@ -1,5 +1,6 @@
-// One validity test of a configuration, stage by stage, on the chair-and-table problem, one thread.
-//   geometry_benchmark [--benchmark_filter=...]
+// One validity test of a configuration, stage by stage, one thread.
+//   geometry_benchmark [--benchmark_filter=...] [PROBLEM]      (default: the chair-and-table
+//   problem)
 #include <benchmark/benchmark.h>
 
 #include <random>
@@ -13,13 +14,13 @@
 namespace cguide::numeric {
 namespace {
 
+std::string problem_file = CGUIDE_FIXTURES "/problems/chair_and_table.yaml";  // NOLINT: a program
+
 // Configurations in order along a random walk about the postures of the problem, as a planner makes
 // them.
 struct Bench {
   explicit Bench(bool self)
-      : problem(io::ReadProblem(std::string(CGUIDE_FIXTURES) + "/problems/chair_and_table.yaml")),
-        world(Prepare(self)),
-        workspace(world) {
+      : problem(io::ReadProblem(problem_file)), world(Prepare(self)), workspace(world) {
     Rng rng(1);
     Configuration q = problem.start;
     std::normal_distribution<double> normal;
@@ -120,10 +121,10 @@ void PlaceAndFindApproaches(benchmark::State& state) {
   std::size_t i = 0;
   for (auto _ : state) {
     Place(b.world, b.free[i++ % b.free.size()], &b.workspace);
-    FindApproaches(b.world, 0.5, static_cast<int>(state.range(0)), &b.workspace, &approaches);
+    FindApproaches(b.world, {}, &b.workspace, &approaches);
   }
 }
-BENCHMARK(PlaceAndFindApproaches)->Arg(1)->Arg(4);
+BENCHMARK(PlaceAndFindApproaches);
 
 void EnclosuresOfAllPairs(benchmark::State& state) {
   Bench& b = Get(true);
@@ -158,4 +159,8 @@ BENCHMARK(FclOnSelfPairs);
 }  // namespace
 }  // namespace cguide::numeric
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (argc > 1) cguide::numeric::problem_file = argv[1];
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -169,6 +169,67 @@ TEST_CASE("Verdicts agree with the facets of the pyramids' double description") 
   CHECK(fails > 5);
 }
 
+TEST_CASE("With errors a verdict holds for every truth they allow") {
+  std::mt19937 rng(77);
+  const Rational error(1, 1000);
+  int holds = 0, fails = 0, undecided = 0;
+  for (int round = 0; round < 40; ++round) {
+    EquilibriumQuery query =
+        Query(Foot(), {RandomInteger(rng, 12) / 64, RandomInteger(rng, 6) / 64, 1});
+    if (round % 2 == 0)
+      query.contacts.push_back({{0, Rational(1, 2), 1}, {{0, -1, 0}, Rational(1, 2)}});
+    query.com_error = error;
+    for (ExactContact& contact : query.contacts) {
+      contact.error_p = error;
+      contact.error_w = error / 100;
+    }
+    const StabilityResult result = Decide(query);
+    for (int truth = 0; truth < 5; ++truth) {
+      // Moves of length at most sqrt 3/2 of the errors.
+      EquilibriumQuery real =
+          Query(query.contacts, query.com + Scaled(error, RandomVector(rng, 1, 2)));
+      for (ExactContact& contact : real.contacts) {
+        contact.p += Scaled(contact.error_p, RandomVector(rng, 1, 2));
+        contact.cone.w += Scaled(contact.error_w, RandomVector(rng, 1, 2));
+        contact.error_p = contact.error_w = 0;
+      }
+      const Verdict verdict = Decide(real).verdict;
+      if (result.verdict != Verdict::kUndecided) REQUIRE(verdict == result.verdict);
+    }
+    holds += result.verdict == Verdict::kHolds;
+    fails += result.verdict == Verdict::kFails;
+    undecided += result.verdict == Verdict::kUndecided;
+  }
+  CHECK(holds > 5);
+  CHECK(fails > 5);
+  CHECK(undecided > 0);
+}
+
+TEST_CASE("Errors of the size of rounding decide what is not within rounding of a tie") {
+  const Rational tiny(1, mpz_class(1) << 50), edge(1, 8);
+  const auto at = [&](const Rational& x) {
+    EquilibriumQuery query = Query(Foot(), {x, 0, 1});
+    query.com_error = tiny;
+    for (ExactContact& contact : query.contacts) contact.error_p = contact.error_w = tiny;
+    return Decide(query);
+  };
+  CHECK(at(0).verdict == Verdict::kHolds);
+  CHECK(at(edge - tiny * 10000).verdict == Verdict::kHolds);
+  CHECK(at(edge + tiny * 100).verdict == Verdict::kFails);
+  CHECK(at(edge).verdict == Verdict::kUndecided);
+  CHECK(at(edge - tiny).verdict == Verdict::kUndecided);
+}
+
+TEST_CASE("A contact that is not certain neither supports nor lets a pose be refuted") {
+  EquilibriumQuery query = Query(Foot(), {0, 0, 1});
+  for (ExactContact& contact : query.contacts) contact.certain = contact.p[0] < 0;
+  CHECK(Decide(query).verdict == Verdict::kUndecided);
+  query.com[0] = Rational(-1, 2);
+  CHECK(Decide(query).verdict == Verdict::kFails);  // beyond all four
+  query.contacts.clear();
+  CHECK(Decide(query).verdict == Verdict::kFails);
+}
+
 TEST_CASE("Altered forces and separators are refused") {
   const EquilibriumQuery stable = Query(Foot(), {0, 0, 1});
   auto forces = DecideStability(stable).forces;

@@ -91,6 +91,28 @@ TEST_CASE("Exact ties of the cone are admissible, and beyond them nothing is") {
   CHECK(InscribedPyramid({{0, 0, 1}, Rational(1, 2)}, 4)[0] == Vector3q{Rational(1, 2), 0, 1});
 }
 
+TEST_CASE("Narrowed and widened cones bracket the cones about every nearby normal") {
+  std::mt19937 rng(4);
+  const FrictionCone cone{{0, 0, 10}, Rational(1, 2)};
+  const auto narrow = Narrowed(cone, 1), wide = Widened(cone, 1);
+  REQUIRE((narrow && wide));
+  for (int round = 0; round < 50; ++round) {
+    const FrictionCone near{cone.w + RandomVector(rng, 5, 9), cone.mu};  // 5/9 sqrt 3 < 1
+    for (const Vector3q& u : InscribedPyramid(*narrow, 8)) REQUIRE(IsAdmissible(near, u));
+    for (const Vector3q& u : InscribedPyramid(near, 8)) REQUIRE(IsAdmissible(*wide, u));
+  }
+  // Tight: a normal tilted by asin(1/10) towards x touches both.
+  const FrictionCone tilted{{1, 0, 10}, cone.mu};
+  const Rational slack(1, 100);
+  CHECK_FALSE(IsAdmissible(tilted, {Rational(-narrow->mu - slack), 0, 1}));
+  CHECK(Narrowed(cone, 0)->mu == cone.mu);
+  CHECK(Widened(cone, 0)->mu == cone.mu);
+  CHECK_FALSE(Narrowed(cone, 9));
+  CHECK_FALSE(Narrowed({{0, 0, 1}, 0}, Rational(1, 10)));
+  CHECK_FALSE(Widened(cone, 9));
+  CHECK_FALSE(Widened(cone, 10));
+}
+
 TEST_CASE("The first generator leans towards the axis least aligned with the normal") {
   const auto pyramid = InscribedPyramid({{1, 3, 2}, Rational(1, 2)}, 4);
   CHECK(pyramid[0][0] / SquaredNorm(pyramid[0]) > 0);

@@ -52,7 +52,8 @@ void RequireSound(const Answers& a) {
   };
   const bool free = a.squared > a.radii * a.radii;
   if (a.clearance.lo > 0) REQUIRE(at_most(a.clearance.lo));
-  if (std::isfinite(a.clearance.hi) && free) REQUIRE_FALSE(at_most(a.clearance.hi * (1 + 1e-15) + 1e-300));
+  if (std::isfinite(a.clearance.hi) && free)
+    REQUIRE_FALSE(at_most(a.clearance.hi * (1 + 1e-15) + 1e-300));
   if (a.clearance.overlap) REQUIRE_FALSE(free);
   if (a.verdict == Verdict::kHolds) REQUIRE(free);
   if (a.verdict == Verdict::kFails) REQUIRE_FALSE(free);
@@ -60,11 +61,16 @@ void RequireSound(const Answers& a) {
 
 ConvexShape RandomShape(std::mt19937_64& rng, int kind) {
   switch (kind) {
-    case 0: return Box{RandomPoint(rng, 1).cwiseAbs() + Vector3d::Constant(0.01)};
-    case 1: return Sphere{Between(rng, 0.05, 0.5)};
-    case 2: return Capsule{Between(rng, 0.05, 0.3), Between(rng, 0.1, 1)};
-    case 3: return RandomHull(rng, 4 + static_cast<int>(rng() % 20), 0.5);
-    default: return RandomHull(rng, 1 + static_cast<int>(rng() % 4), 0.5);
+    case 0:
+      return Box{RandomPoint(rng, 1).cwiseAbs() + Vector3d::Constant(0.01)};
+    case 1:
+      return Sphere{Between(rng, 0.05, 0.5)};
+    case 2:
+      return Capsule{Between(rng, 0.05, 0.3), Between(rng, 0.1, 1)};
+    case 3:
+      return RandomHull(rng, 4 + static_cast<int>(rng() % 20), 0.5);
+    default:
+      return RandomHull(rng, 1 + static_cast<int>(rng() % 4), 0.5);
   }
 }
 
@@ -176,9 +182,9 @@ TEST_CASE("one shape inside another overlaps, meshes included") {
       test::BoxObject("box", {-1, -1, -1}, {1, 1, 1}), OneObject("sphere", Sphere{1}),
       OneObject("cylinder", Cylinder{1, 2}), OneObject("halfspace", Halfspace{{0, 0, 1}, 1}),
       OneObject("solid", test::BoxMesh({-1, -1, -1}, {1, 1, 1}))};
-  const std::vector<ConvexShape> shapes{Box{{0.1, 0.1, 0.1}}, Sphere{0.1}, Cylinder{0.1, 0.1},
-                                        Capsule{0.1, 0.1},
-                                        Hull{test::BoxMesh({0, 0, 0}, {0.1, 0.2, 0.1}).vertices, {}}};
+  const std::vector<ConvexShape> shapes{
+      Box{{0.1, 0.1, 0.1}}, Sphere{0.1}, Cylinder{0.1, 0.1}, Capsule{0.1, 0.1},
+      Hull{test::BoxMesh({0, 0, 0}, {0.1, 0.2, 0.1}).vertices, {}}};
   for (const Object& object : objects) {
     for (const ConvexShape& shape : shapes) {
       const World world(OneBodyModel({{{}, shape}}, {object}));
@@ -210,10 +216,10 @@ TEST_CASE("a surface has no inside") {
 TEST_CASE("cylinders keep the distances of closed forms") {
   std::mt19937_64 rng(17);
   for (int i = 0; i < 200; ++i) {
-    const double r = Between(rng, 0.1, 0.5), s = Between(rng, 0.1, 0.5), gap = Between(rng, 0.01, 1);
+    const double r = Between(rng, 0.1, 0.5), s = Between(rng, 0.1, 0.5),
+                 gap = Between(rng, 0.01, 1);
     const double angle = Between(rng, 0, 6);
-    const World world(
-        OneBodyModel({{{}, Cylinder{r, 1}}}, {OneObject("other", Cylinder{s, 1})}));
+    const World world(OneBodyModel({{{}, Cylinder{r, 1}}}, {OneObject("other", Cylinder{s, 1})}));
     Workspace workspace(world);
     // Parallel axes: the gap of two discs.
     const double d = r + s + gap;

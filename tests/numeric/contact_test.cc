@@ -16,7 +16,8 @@ using test::RandomQuaternion;
 
 // A foot: a box whose four sole corners are sites.
 Model FootModel(std::vector<Object> objects) {
-  Model model = test::OneBodyModel({{{{0, 0, 0.05}, {}}, Box{{0.24, 0.14, 0.1}}}}, std::move(objects));
+  Model model =
+      test::OneBodyModel({{{{0, 0, 0.05}, {}}, Box{{0.24, 0.14, 0.1}}}}, std::move(objects));
   for (const double x : {-0.12, 0.12}) {
     for (const double y : {-0.07, 0.07}) model.sites.push_back({0, {x, y, 0}, 0});
   }
@@ -46,7 +47,9 @@ std::vector<std::pair<std::string, std::vector<Object>>> Floors() {
       cracked.push_back(BoxObject(name, lower + Vector3d(0.00025, 0.00025, 0),
                                   upper - Vector3d(0.00025, 0.00025, 0)));
       Surface sheet;
-      sheet.vertices = {{lower[0], lower[1], 0}, {upper[0], lower[1], 0}, {upper[0], upper[1], 0},
+      sheet.vertices = {{lower[0], lower[1], 0},
+                        {upper[0], lower[1], 0},
+                        {upper[0], upper[1], 0},
                         {lower[0], upper[1], 0}};
       sheet.triangles = {{0, 1, 2}, {2, 3, 0}};
       sheets.push_back(OneObject(name, sheet));
@@ -103,8 +106,9 @@ TEST_CASE("a floor gives the same contacts however it is cut") {
   const auto floors = Floors();
   for (int i = 0; i < 40; ++i) {
     const double tilt = Between(rng, -0.1, 0.1);
-    Configuration q = At(Pose{{Between(rng, -0.2, 0.2), Between(rng, -0.2, 0.2), Between(rng, 0.01, 0.05)},
-                              {std::sin(tilt), 0, 0, std::cos(tilt)}});
+    Configuration q =
+        At(Pose{{Between(rng, -0.2, 0.2), Between(rng, -0.2, 0.2), Between(rng, 0.01, 0.05)},
+                {std::sin(tilt), 0, 0, std::cos(tilt)}});
     if (i % 5 == 0) q.X_WB = {{0.12, 0.07, 0.02}, {}};  // Sites exactly above a seam and a corner.
     const Seen reference = Look(floors.front().second, q);
     contacts += static_cast<int>(reference.contacts.size());
@@ -246,7 +250,8 @@ TEST_CASE("contacts hold their error bounds against shifted and turned copies of
 }
 
 TEST_CASE("the nearest model gives one contact per body") {
-  Model model = FootModel({BoxObject("a", {-1, -1, -1}, {1, 1, 0}), BoxObject("b", {0.13, -1, 0}, {1, 1, 1})});
+  Model model = FootModel(
+      {BoxObject("a", {-1, -1, -1}, {1, 1, 0}), BoxObject("b", {0.13, -1, 0}, {1, 1, 1})});
   model.contact.model = ContactModel::kNearest;
   const World world(std::move(model));
   Workspace workspace(world);

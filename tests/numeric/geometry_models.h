@@ -60,8 +60,8 @@ inline Hull RandomHull(std::mt19937_64& rng, int points, double size) {
 inline Solid BoxMesh(const Eigen::Vector3d& lower, const Eigen::Vector3d& upper) {
   Solid solid;
   for (int i = 0; i < 8; ++i) {
-    solid.vertices.push_back({i & 1 ? upper[0] : lower[0], i & 2 ? upper[1] : lower[1],
-                              i & 4 ? upper[2] : lower[2]});
+    solid.vertices.push_back(
+        {i & 1 ? upper[0] : lower[0], i & 2 ? upper[1] : lower[1], i & 4 ? upper[2] : lower[2]});
   }
   solid.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};

@@ -9,11 +9,11 @@
 #include <thread>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/numeric/describe.h"
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/numeric/membership.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
-#include "cguide/verify/cli/describe.h"
 #include "cguide/verify/cli/version.h"
 
 namespace cguide::cli {
@@ -175,7 +175,7 @@ void CheckSelfCollision(const Problem& problem, const World& world,
     const numeric::Pair pair{i, j, true};
     if (!PairClearance(world, pair, 0.01, &workspace->geometry).overlap) continue;
     ++overlaps;
-    findings->Warn("at the start " + DescribePair(problem.model, pair) +
+    findings->Warn("at the start " + numeric::DescribePair(problem.model, pair) +
                    " overlap; disable the pair in the SRDF if they always do");
   }
   if (overlaps == 0) {
@@ -194,7 +194,7 @@ void CheckEndpoint(const Problem& problem, const World& world, const Configurati
     return;
   }
   findings->Warn(std::string(what) +
-                 " is not in C_guide: " + DescribeMembership(problem.model, membership));
+                 " is not in C_guide: " + numeric::DescribeMembership(problem.model, membership));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // Reads what the C++ side packed: JSON with names, and runs [first, count] of 32-bit words.
 
+import {cornersOf} from './corners.js';
+
 export const VERDICTS = ['holds', 'fails', 'undecided'];
 
 function decode(text) {
@@ -98,6 +100,23 @@ class Frames {
   verdictName(frame) { return VERDICTS[this.verdict[frame]]; }
 }
 
+// A ball, in the body's frame, that holds the corners of the body's shapes.
+function ballOf(body) {
+  const points = [];
+  for (const link of body.links) {
+    for (const shape of link.shapes) {
+      for (const corner of cornersOf(shape)) points.push(rotate(shape.q, corner).map((v, k) => v + shape.p[k]));
+    }
+  }
+  if (points.length === 0) return {centre: [0, 0, 0], radius: 0};
+  const centre = [0, 1, 2].map((k) => {
+    const values = points.map((point) => point[k]);
+    return (values.reduce((a, b) => Math.min(a, b)) + values.reduce((a, b) => Math.max(a, b))) / 2;
+  });
+  const radius = points.reduce((most, p) => Math.max(most, Math.hypot(...p.map((v, k) => v - centre[k]))), 0);
+  return {centre, radius};
+}
+
 // Ball round everything the robot does, and the height that counts as the ground below it.
 export function surveyMotion(data) {
   const {frames} = data;
@@ -106,10 +125,12 @@ export function surveyMotion(data) {
     low[k] = Math.min(low[k], value - pad);
     high[k] = Math.max(high[k], value + pad);
   });
+  const balls = data.bodies.map(ballOf);
   for (let f = 0; f < frames.count; ++f) {
     for (let b = 0; b < frames.bodyCount; ++b) {
       const pose = frames.poseOf(f, b);
-      add(pose[0], pose[1], pose[2], 0.12);
+      const [x, y, z] = rotate(pose.subarray(3), balls[b].centre);
+      add(pose[0] + x, pose[1] + y, pose[2] + z, balls[b].radius);
     }
     for (const {point} of frames.contacts(f)) add(point[0], point[1], point[2], 0);
   }

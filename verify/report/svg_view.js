@@ -1,7 +1,8 @@
 // A flat drawing for browsers without WebGL: outlines of the shapes, the farthest first.
+import {cornersOf} from './corners.js';
 import {rotate, worldHalfspace} from './data.js';
+import {addNotice} from './notice.js';
 import {axesOfView, hullOf} from './projection.js';
-import {cornersOf} from './shapes.js';
 
 const NS = 'http://www.w3.org/2000/svg';
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -17,10 +18,7 @@ export class SvgView {
     this.element.setAttribute('role', 'img');
     this.element.setAttribute('preserveAspectRatio', 'xMidYMid meet');
     stage.insertBefore(this.element, stage.firstChild);
-    const notice = document.createElement('p');
-    notice.className = 'notice';
-    notice.textContent = 'This browser has no WebGL: flat drawing.';
-    stage.appendChild(notice);
+    addNotice(stage, 'This browser has no WebGL: flat drawing.');
     this.onDrawn = () => {};
     this.setView('side');
   }

@@ -8,10 +8,13 @@ export class Timeline {
     this.theme = theme;
     this.t = 0;
     const {frames} = data;
-    this.top = scaleOf([...frames.comMargin, ...frames.clearance]);
+    // Margin and clearance have scales of their own, left and right, and one common zero.
+    this.margin = new Scale(frames.comMargin);
+    this.clearance = new Scale(frames.clearance);
+    this.below = Math.max(this.margin.below, this.clearance.below);
     const seek = (event) => {
       const box = canvas.getBoundingClientRect();
-      onSeek(Math.min(1, Math.max(0, (event.clientX - box.left - this.left) / (box.width - this.left - 1))));
+      onSeek(Math.min(1, Math.max(0, (event.clientX - box.left - this.left) / (box.width - this.left - this.right))));
     };
     canvas.addEventListener('pointerdown', (event) => {
       canvas.setPointerCapture(event.pointerId);
@@ -21,7 +24,8 @@ export class Timeline {
     new ResizeObserver(() => this.paint()).observe(canvas);
   }
 
-  get left() { return 44; }
+  get left() { return 52; }
+  get right() { return 52; }
 
   setTheme(theme) {
     this.theme = theme;
@@ -56,24 +60,30 @@ export class Timeline {
 
   // On whole device pixels, so that neighbours in the strip leave no seam.
   snap(x) { return Math.round(x * this.size.ratio) / this.size.ratio; }
-  x(t) { return this.left + t * (this.size.width - this.left - 1); }
-  y(value) { return this.size.bottom - Math.min(1, Math.max(0, value / this.top)) * (this.size.bottom - 12); }
+  x(t) { return this.left + t * (this.size.width - this.left - this.right); }
+  // Height of a value divided by its scale's top.
+  y(share) {
+    const up = (Math.min(1, share) + this.below) / (1 + this.below);
+    return this.size.bottom - Math.max(0, up) * (this.size.bottom - 12);
+  }
 
   drawAxis(pen) {
     const {theme, size} = this;
     pen.font = '10.5px system-ui, sans-serif';
-    pen.textAlign = 'right';
     pen.textBaseline = 'middle';
-    for (const value of [0, this.top / 2, this.top]) {
-      const y = Math.round(this.y(value)) + 0.5;
-      pen.strokeStyle = theme.line;
+    for (const share of [0, this.below > 0 ? -this.below : 0.5, 1]) {
+      const y = Math.round(this.y(share)) + 0.5;
+      pen.strokeStyle = share === 0 && this.below > 0 ? theme.muted : theme.line;
       pen.beginPath();
       pen.moveTo(this.left, y);
-      pen.lineTo(size.width, y);
+      pen.lineTo(size.width - this.right, y);
       pen.stroke();
-      pen.fillStyle = theme.muted;
-      const text = value === 0 ? '0' : value < 0.0995 ? (1000 * value).toFixed(0) + ' mm' : value.toPrecision(2) + ' m';
-      pen.fillText(text, this.left - 6, y);
+      pen.textAlign = 'right';
+      pen.fillStyle = theme.margin;
+      pen.fillText(this.margin.label(share), this.left - 6, y);
+      pen.textAlign = 'left';
+      pen.fillStyle = theme.clearance;
+      pen.fillText(this.clearance.label(share), size.width - this.right + 6, y);
     }
     pen.strokeStyle = theme.line;
     for (const t of this.data.waypoints) {
@@ -87,17 +97,17 @@ export class Timeline {
 
   drawCurves(pen) {
     const {frames} = this.data;
-    const {theme, size} = this;
-    const trace = (values, finish) => {
+    const {theme} = this;
+    const trace = (values, top, finish) => {
       let first = -1;
       for (let f = 0; f <= frames.count; ++f) {
         const known = f < frames.count && !Number.isNaN(values[f]);
         if (known && first < 0) {
           first = f;
           pen.beginPath();
-          pen.moveTo(this.x(frames.t[f]), this.y(values[f]));
+          pen.moveTo(this.x(frames.t[f]), this.y(values[f] / top));
         } else if (known) {
-          pen.lineTo(this.x(frames.t[f]), this.y(values[f]));
+          pen.lineTo(this.x(frames.t[f]), this.y(values[f] / top));
         } else if (first >= 0) {
           finish(first, f - 1);
           first = -1;
@@ -106,17 +116,17 @@ export class Timeline {
     };
     pen.lineJoin = 'round';
     pen.lineWidth = 1.5;
-    trace(frames.comMargin, (first, last) => {
+    trace(frames.comMargin, this.margin.top, (first, last) => {
       pen.strokeStyle = pen.fillStyle = theme.margin;
       pen.stroke();
-      pen.lineTo(this.x(frames.t[last]), size.bottom);
-      pen.lineTo(this.x(frames.t[first]), size.bottom);
+      pen.lineTo(this.x(frames.t[last]), this.y(0));
+      pen.lineTo(this.x(frames.t[first]), this.y(0));
       pen.globalAlpha = 0.2;
       pen.fill();
       pen.globalAlpha = 1;
     });
     pen.strokeStyle = theme.clearance;
-    trace(frames.clearance, () => pen.stroke());
+    trace(frames.clearance, this.clearance.top, () => pen.stroke());
   }
 
   // Each frame colours the strip half-way to its neighbours, and nothing beyond the first and last.
@@ -186,12 +196,26 @@ export class Timeline {
   }
 }
 
-// The smallest round number that most of the finite values stay below.
-function scaleOf(values) {
-  const sorted = values.filter((value) => Number.isFinite(value) && value > 0).sort((a, b) => a - b);
-  const goal = sorted.length ? sorted[Math.floor(0.98 * (sorted.length - 1))] : 0.1;
-  const power = 10 ** Math.floor(Math.log10(goal));
-  return power * [1, 2, 4, 6, 8, 10].find((k) => k * power >= goal * 0.999);
+// A round top that most values stay below, and the room below zero as a share of it.
+class Scale {
+  constructor(run) {
+    const values = Array.from(run).filter(Number.isFinite).sort((a, b) => a - b);
+    const negative = values.filter((value) => value < 0);
+    const positive = values.filter((value) => value > 0);
+    this.known = values.length > 0;
+    const goal = positive.length ? positive[Math.floor(0.98 * (positive.length - 1))] : 0.1;
+    const power = 10 ** Math.floor(Math.log10(goal));
+    this.top = power * [1, 2, 4, 6, 8, 10].find((k) => k * power >= goal * 0.999);
+    // Enough to read a label, at most as much as above zero.
+    this.below = negative.length ? Math.min(1, Math.max(0.3, -negative[0] / this.top)) : 0;
+  }
+
+  label(share) {
+    if (!this.known) return '';
+    const value = share * this.top;
+    if (value === 0) return '0';
+    return this.top < 0.0995 ? Number((1000 * value).toPrecision(2)) + ' mm' : Number(value.toPrecision(2)) + ' m';
+  }
 }
 
 function hatch(pen, colour) {

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "cguide/numeric/stability_contacts_internal.h"
+
+namespace cguide::numeric {
+
+/** The simplex method on revolution cones; how it works is told in stability_simplex.cc. Untrusted.
+ */
+class Simplex {
+ public:
+  enum class Step {
+    kMoved,
+    kOptimal,
+    kUnbounded,  ///< the cone is the whole space, tau was raised along a ray
+    kStuck       ///< the cone contains a line along which only the room s grows
+  };
+
+  Simplex(const ScaledContacts& contacts, int count, Balance* balance)
+      : c_(contacts), count_(count), balance_(balance) {}
+
+  /** The whole question, certificates included. */
+  Proposal Run();
+
+  /** Pieces of it, for the margins. Prepare finds the base and the first feasible point (false
+   where there is nothing to start from); Iterate makes one pivot towards the largest tau, earning
+   s. */
+  bool Prepare();
+  Step Iterate(double s);
+
+  /** Lets Iterate displace the centre of mass by any multiple of d. At most twice. */
+  void Free(const Eigen::Vector3d& d);
+  /** The displacement in units of contacts.length. */
+  Eigen::Vector3d displacement() const;
+
+  /** Moves the centre of mass from a feasible state along d until the wrench leaves the cone, at
+   most by `limit` lengths. Then y() has y.(0, d x v_f) = 1, y.a <= 0 for all contacts and y.v =
+   -the distance.
+   @return the distance, or `limit`. */
+  double Shoot(const Eigen::Vector3d& d, double limit);
+
+  /** A point of the program from which Shoot may start. */
+  bool is_feasible() const { return full_rank_ && direction_row_ >= 0 && tau() > 0; }
+
+  bool full_rank() const { return full_rank_; }
+  double tau() const { return x_[direction_row_]; }
+  int pivots() const { return pivots_; }
+  const Vector6d& y() const { return y_; }
+
+ private:
+  enum class Kind { kContact, kArtificial, kDirection, kShift };
+  struct Price {
+    int contact = -1;
+    double value = 0;
+  };
+
+  struct Shift {
+    Eigen::Vector3d d = Eigen::Vector3d::Zero();
+    int row = -1;      ///< where it is basic
+    double sign = 1;   ///< of the multiple of d that the column stands for
+    double value = 0;  ///< where it is not basic
+  };
+
+  static bool IsFree(Kind kind) { return kind == Kind::kDirection || kind == Kind::kShift; }
+
+  void Crash();
+  bool Start();
+  int DearestShift(double* price) const;
+  Step EnterShift(int shift);
+  bool Enter(const Generator& entering, Kind kind);
+  Step FollowRay(const Generator& entering);
+  void ComputeMultipliers(double s);
+  Price DearestContact(const Vector6d& y) const;
+  Price LargestSupport(const Vector6d& rho) const;
+  Generator MakeGenerator(int contact, const Vector6d& y) const;
+  int ChooseLeaving(const Vector6d& alpha) const;
+  void Pivot(int row, const Vector6d& alpha);
+  bool TryInterior();
+
+  const ScaledContacts& c_;
+  const int count_;
+  Balance* const balance_;
+  Matrix6d inverse_ = Matrix6d::Identity();  // of the current basis
+  Generator column_[6];
+  Kind kind_[6];
+  Vector6d x_ = Vector6d::Zero();  // basic variables
+  int direction_row_ = -1;         // where tau is basic
+  bool full_rank_ = true;
+  bool in_span_ = true;
+  Vector6d y_ = Vector6d::Zero();
+  Vector6d ray_ =
+      Vector6d::Zero();  // rates of the basic variables where a column entered unlimited
+  Shift shift_[2];
+  int num_shifts_ = 0;
+  int last_row_ = -1;  // of the last pivot of Enter
+  int pivots_ = 0;
+};
+
+}  // namespace cguide::numeric

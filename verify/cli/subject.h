@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "cguide/exact/core/path.h"
+#include "cguide/numeric/problem.h"
+#include "cguide/verify/cli/commands.h"
+
+namespace cguide::cli {
+
+/** A path to look at and the problem it belongs to. */
+struct Subject {
+  numeric::Problem problem;
+  std::string problem_file;
+  Path path;
+  std::string edges;     ///< how its maker tested it; empty for foreign paths
+  std::string origin;    ///< tool version and seed; empty for foreign paths
+};
+
+/** Reads a guide (JSON; its problem is the one it names unless `problem_file` is given) or a foreign
+ path (CSV; `problem_file` must be given). Warns where the model has changed since.
+ @throws Error (kBadInput, kIo). */
+Subject ReadSubject(const CommonArguments& common, const std::string& path_file,
+                    const std::string& problem_file);
+
+}  // namespace cguide::cli

@@ -1,0 +1,129 @@
+#include "cguide/verify/sample_ladder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cguide/numeric/margins.h"
+
+namespace cguide::verify {
+namespace {
+
+using numeric::Clearance;
+using numeric::Pair;
+using numeric::World;
+
+constexpr int kBits[] = {106, 256};
+
+}  // namespace
+
+PreparedTwins::PreparedTwins(const Model& model) : geometry(exact::PrepareModel(model)) {}
+
+SampleLadder::SampleLadder(const World& world, const PreparedTwins& twins)
+    : world_(&world),
+      twins_(&twins),
+      pairs_(numeric::AllPairs(world)),
+      workspace_(world),
+      placements_(std::size(kBits)) {}
+
+void SampleLadder::Place(const Configuration& q) {
+  q_ = q;
+  for (auto& placement : placements_) placement.reset();
+  numeric::Place(*world_, q, &workspace_.geometry);
+}
+
+double SampleLadder::Skin(const Pair& pair) const {
+  const ContactRules& rules = world_->model().contact;
+  if (pair.self || rules.skin == 0) return 0;
+  const bool listed = std::binary_search(rules.may_touch.begin(), rules.may_touch.end(),
+                                         std::pair(pair.body, pair.other));
+  return listed ? rules.skin : 0;
+}
+
+Verdict SampleLadder::TestPairExactly(const Pair& pair, const Rational& threshold) {
+  for (std::size_t i = 0; i < std::size(kBits); ++i) {
+    if (!placements_[i]) {
+      placements_[i] = exact::PlaceRobot(world_->model().robot, q_, kBits[i]);
+    }
+    const exact::Separation separation =
+        pair.self ? exact::BodyBodySeparation(twins_->geometry, *placements_[i], pair.body,
+                                              pair.other, threshold)
+                  : exact::BodyObjectSeparation(twins_->geometry, *placements_[i], pair.body,
+                                                pair.other, threshold);
+    if (separation.verdict != Verdict::kUndecided) return separation.verdict;
+  }
+  return Verdict::kUndecided;
+}
+
+Verdict SampleLadder::TestPair(const Pair& pair, double* depth, StageCounts* counts) {
+  constexpr double kNear = 0.01;  // farther pairs need no better bound than "farther"
+  const Clearance clearance = numeric::PairClearance(*world_, pair, kNear, &workspace_.geometry);
+  const double skin = Skin(pair);
+  *depth = clearance.overlap ? clearance.depth : 0;
+  if (clearance.lo > 0) {
+    ++counts->fast;
+    return Verdict::kHolds;
+  }
+  if (clearance.overlap && skin == 0) {
+    ++counts->fast;
+    return Verdict::kFails;
+  }
+  const Verdict verdict = TestPairExactly(pair, Lift(-skin));
+  ++(verdict == Verdict::kUndecided ? counts->undecided : counts->exact);
+  return verdict;
+}
+
+std::vector<PairFinding> SampleLadder::TestPairs(StageCounts* counts) {
+  if (numeric::TestFree(*world_, &workspace_.geometry).verdict == Verdict::kHolds) {
+    counts->fast += static_cast<long>(pairs_.size());
+    return {};
+  }
+  std::vector<PairFinding> findings;
+  for (const Pair& pair : pairs_) {
+    double depth = 0;
+    const Verdict verdict = TestPair(pair, &depth, counts);
+    if (verdict != Verdict::kHolds) findings.push_back({pair, verdict, depth});
+  }
+  return findings;
+}
+
+std::optional<PairFinding> SampleLadder::NearestPair(double cutoff) {
+  std::optional<PairFinding> nearest;
+  for (const Pair& pair : pairs_) {
+    if (cutoff <= 0) break;
+    const Clearance clearance = numeric::PairClearance(*world_, pair, cutoff, &workspace_.geometry);
+    if (clearance.lo >= cutoff) continue;
+    cutoff = clearance.lo;
+    nearest = {pair, Verdict::kHolds, clearance.lo};
+  }
+  return nearest;
+}
+
+numeric::StabilityAnswer SampleLadder::TestStability(StageCounts* counts) {
+  numeric::FindContacts(*world_, &workspace_.geometry, &workspace_.contacts);
+  const numeric::StabilityAnswer fast =
+      numeric::TryStability(numeric::PlacedQuery(*world_, workspace_), &workspace_.stability);
+  if (fast.verdict != Verdict::kUndecided) {
+    ++counts->fast;
+    return fast;
+  }
+  ++counts->undecided;
+  return fast;
+}
+
+double SampleLadder::ComMargin() {
+  return numeric::FindComMargin(numeric::PlacedQuery(*world_, workspace_), {},
+                                &workspace_.stability)
+      .lo;
+}
+
+double SampleLadder::ForceMargin() const {
+  return numeric::ForceMargin(numeric::PlacedQuery(*world_, workspace_));
+}
+
+std::vector<Eigen::Vector3d> SampleLadder::SupportRegion() {
+  return numeric::FindSupportRegion(numeric::PlacedQuery(*world_, workspace_), {},
+                                    &workspace_.stability)
+      .vertices_W;
+}
+
+}  // namespace cguide::verify
