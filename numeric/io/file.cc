@@ -62,6 +62,15 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+// YAML's spellings of NaN and the infinities.
+bool IsYamlSpecial(std::string_view text) {
+  if (text.starts_with('-')) text.remove_prefix(1);
+  for (const char* word : {".nan", ".NaN", ".NAN", ".inf", ".Inf", ".INF"}) {
+    if (text == word) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string ReadFileBytes(const fs::path& file, std::size_t limit) {
@@ -142,19 +151,17 @@ std::string Quote(std::string_view text) {
 
 double ParseDouble(std::string_view text, std::string* why) {
   why->clear();
+  // from_chars knows no leading plus; a sign after it would be a second one.
   std::string_view digits = text;
-  if (digits.starts_with('+')) digits.remove_prefix(1);
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') digits.remove_prefix(1);
   double value = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = end == digits.data() + digits.size() && !digits.empty();
-  if (text == ".nan" || text == ".NaN" || text == ".NAN" || (whole && std::isnan(value))) {
-    *why = "is not a finite number";
-  } else if (digits == ".inf" || digits == ".Inf" || digits == ".INF" || digits == "-.inf" ||
-             (whole && std::isinf(value))) {
+  if (IsYamlSpecial(digits) || (whole && code == std::errc() && !std::isfinite(value))) {
     *why = "is not a finite number";
   } else if (whole && code == std::errc::result_out_of_range) {
     *why = "is beyond the range of a double";
-  } else if (!whole || code != std::errc() || digits.starts_with("+")) {
+  } else if (!whole || code != std::errc()) {
     *why = "is not a number";
   }
   return why->empty() ? value : 0;

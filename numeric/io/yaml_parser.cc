@@ -3,8 +3,8 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
-#include <algorithm>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "cguide/exact/core/error.h"
@@ -72,6 +72,7 @@ class TreeBuilder : public YAML::EventHandler {
   struct Frame {
     YamlNode node;
     YAML::anchor_t anchor;
+    std::set<std::string> keys;
   };
 
   [[noreturn]] void Refuse(int line, int column, const std::string& why) const {
@@ -105,7 +106,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
     YamlNode node = MakeNode(kind, mark);
     if (ExpectsKey()) RefuseKey(node);
-    stack_.push_back({std::move(node), anchor});
+    stack_.push_back({std::move(node), anchor, {}});
   }
 
   void Close() {
@@ -120,7 +121,8 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   [[noreturn]] void RefuseKey(const YamlNode& key) const {
-    Refuse(key.line, key.column, "a key must be a word, not a list, a map or nothing");
+    Refuse(key.line, key.column,
+           "a key must be a word, not a list, a map or nothing; is a bracket or the rest missing?");
   }
 
   void Finish(YamlNode node, YAML::anchor_t anchor) {
@@ -135,7 +137,7 @@ class TreeBuilder : public YAML::EventHandler {
       return;
     }
     if (node.kind != YamlNode::Kind::kScalar) RefuseKey(node);
-    if (std::find(parent.keys.begin(), parent.keys.end(), node.text) != parent.keys.end()) {
+    if (!stack_.back().keys.insert(node.text).second) {
       Refuse(node.line, node.column,
              "the key " + Quote(node.text) + " stands twice in this map; keep one of them");
     }

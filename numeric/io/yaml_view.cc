@@ -74,7 +74,11 @@ YamlView YamlView::Get(const std::string& key) const {
 std::vector<std::pair<std::string, YamlView>> YamlView::Entries() const {
   if (!IsMap()) Fail(std::string("a map is expected here, not ") + KindName(node_->kind));
   std::vector<std::pair<std::string, YamlView>> entries;
-  for (const std::string& key : node_->keys) entries.emplace_back(key, Get(key));
+  for (std::size_t i = 0; i < node_->keys.size(); ++i) {
+    const std::string& key = node_->keys[i];
+    const std::string path = path_.empty() ? key : path_ + "." + key;
+    entries.emplace_back(key, YamlView(node_->items[i], *this, path));
+  }
   return entries;
 }
 
