@@ -138,7 +138,6 @@ std::string RenderPage(const ViewInput& input) {
   const report::PageData data = report::PackPageData(input);
   return report::FillTemplate(report::kPageHtml, [&](std::string_view name) -> std::string {
     if (name == "title") return EscapeHtml(input.title);
-    if (name == "robot") return EscapeHtml(input.model.robot.name);
     if (name == "verdict") return VerdictName(input.verdict);
     if (name == "headline") return Headline(input);
     if (name == "tested") return EscapeHtml(input.tested);

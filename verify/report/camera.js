@@ -7,6 +7,7 @@ import {VIEWS} from './projection.js';
 export class CameraRig {
   constructor(element, survey, onChange) {
     this.survey = survey;
+    this.corner = VIEWS.iso;
     this.camera = new PerspectiveCamera(28, 1, 0.05, 400);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, element);
@@ -27,16 +28,24 @@ export class CameraRig {
     this.camera.updateProjectionMatrix();
   }
 
-  setView(name) {
+  // How far away the eye sees the whole motion.
+  fittingDistance() {
     const half = Math.tan(this.camera.fov * Math.PI / 360);
     const fit = half * Math.min(1, this.camera.aspect);
     // A ball of that radius would touch the picture's border; robots are slimmer than their ball.
-    const distance = 0.97 * this.survey.radius / Math.sin(Math.atan(fit));
-    const direction = VIEWS[name];
+    return 0.97 * this.survey.radius / Math.sin(Math.atan(fit));
+  }
+
+  eyeAt(direction, distance) {
     const length = Math.hypot(...direction);
+    return this.survey.centre.map((value, k) => value + distance * direction[k] / length);
+  }
+
+  setView(name) {
+    const distance = this.fittingDistance();
+    const direction = name === 'iso' ? this.corner : VIEWS[name];
     this.controls.target.fromArray(this.survey.centre);
-    this.camera.position.fromArray(this.survey.centre.map(
-        (value, k) => value + distance * direction[k] / length));
+    this.camera.position.fromArray(this.eyeAt(direction, distance));
     // Straight down, "up" is undefined; a breath of -y makes +y the top of the picture.
     if (name === 'top') this.camera.position.y -= 1e-4 * distance;
     this.controls.update();

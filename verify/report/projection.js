@@ -9,6 +9,9 @@ export const VIEWS = {
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const unit = (a) => a.map((value) => value / Math.hypot(...a));
 
+// Corners that the view "iso" chooses from: the first from which the least of the robot is hidden.
+export const CORNERS = [[0.6, -1, 0.5], [0.6, 1, 0.5], [-0.6, -1, 0.5], [-0.6, 1, 0.5]];
+
 // right, up: axes of the picture; back: towards the eye.
 export function axesOfView(name) {
   const back = unit(VIEWS[name]);

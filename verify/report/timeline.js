@@ -8,14 +8,13 @@ export class Timeline {
     this.theme = theme;
     this.t = 0;
     const {frames} = data;
-    const values = [...frames.comMargin, ...frames.clearance].filter(Number.isFinite);
-    this.top = scaleOf(values.filter((value) => value > 0));
-    const below = values.filter((value) => value < 0).map((value) => -value);
-    // Room below zero where something is violated: enough to read its label, at most as much as above.
-    this.low = below.length ? -Math.min(this.top, Math.max(this.top / 4, scaleOf(below))) : 0;
+    // Margin and clearance have scales of their own, left and right, and one common zero.
+    this.margin = new Scale(frames.comMargin);
+    this.clearance = new Scale(frames.clearance);
+    this.below = Math.max(this.margin.below, this.clearance.below);
     const seek = (event) => {
       const box = canvas.getBoundingClientRect();
-      onSeek(Math.min(1, Math.max(0, (event.clientX - box.left - this.left) / (box.width - this.left - 1))));
+      onSeek(Math.min(1, Math.max(0, (event.clientX - box.left - this.left) / (box.width - this.left - this.right))));
     };
     canvas.addEventListener('pointerdown', (event) => {
       canvas.setPointerCapture(event.pointerId);
@@ -26,6 +25,7 @@ export class Timeline {
   }
 
   get left() { return 52; }
+  get right() { return 52; }
 
   setTheme(theme) {
     this.theme = theme;
@@ -60,27 +60,30 @@ export class Timeline {
 
   // On whole device pixels, so that neighbours in the strip leave no seam.
   snap(x) { return Math.round(x * this.size.ratio) / this.size.ratio; }
-  x(t) { return this.left + t * (this.size.width - this.left - 1); }
-  y(value) {
-    const share = (value - this.low) / (this.top - this.low);
-    return this.size.bottom - Math.min(1, Math.max(0, share)) * (this.size.bottom - 12);
+  x(t) { return this.left + t * (this.size.width - this.left - this.right); }
+  // Height of a value divided by its scale's top.
+  y(share) {
+    const up = (Math.min(1, share) + this.below) / (1 + this.below);
+    return this.size.bottom - Math.max(0, up) * (this.size.bottom - 12);
   }
 
   drawAxis(pen) {
     const {theme, size} = this;
     pen.font = '10.5px system-ui, sans-serif';
-    pen.textAlign = 'right';
     pen.textBaseline = 'middle';
-    for (const value of [0, this.low < 0 ? this.low : this.top / 2, this.top]) {
-      const y = Math.round(this.y(value)) + 0.5;
-      pen.strokeStyle = value === 0 && this.low < 0 ? theme.muted : theme.line;
+    for (const share of [0, this.below > 0 ? -this.below : 0.5, 1]) {
+      const y = Math.round(this.y(share)) + 0.5;
+      pen.strokeStyle = share === 0 && this.below > 0 ? theme.muted : theme.line;
       pen.beginPath();
       pen.moveTo(this.left, y);
-      pen.lineTo(size.width, y);
+      pen.lineTo(size.width - this.right, y);
       pen.stroke();
-      pen.fillStyle = theme.muted;
-      const text = value === 0 ? '0' : Math.max(this.top, -this.low) < 0.0995 ? Number((1000 * value).toPrecision(3)) + ' mm' : Number(value.toPrecision(3)) + ' m';
-      pen.fillText(text, this.left - 6, y);
+      pen.textAlign = 'right';
+      pen.fillStyle = theme.margin;
+      pen.fillText(this.margin.label(share), this.left - 6, y);
+      pen.textAlign = 'left';
+      pen.fillStyle = theme.clearance;
+      pen.fillText(this.clearance.label(share), size.width - this.right + 6, y);
     }
     pen.strokeStyle = theme.line;
     for (const t of this.data.waypoints) {
@@ -95,16 +98,16 @@ export class Timeline {
   drawCurves(pen) {
     const {frames} = this.data;
     const {theme} = this;
-    const trace = (values, finish) => {
+    const trace = (values, top, finish) => {
       let first = -1;
       for (let f = 0; f <= frames.count; ++f) {
         const known = f < frames.count && !Number.isNaN(values[f]);
         if (known && first < 0) {
           first = f;
           pen.beginPath();
-          pen.moveTo(this.x(frames.t[f]), this.y(values[f]));
+          pen.moveTo(this.x(frames.t[f]), this.y(values[f] / top));
         } else if (known) {
-          pen.lineTo(this.x(frames.t[f]), this.y(values[f]));
+          pen.lineTo(this.x(frames.t[f]), this.y(values[f] / top));
         } else if (first >= 0) {
           finish(first, f - 1);
           first = -1;
@@ -113,7 +116,7 @@ export class Timeline {
     };
     pen.lineJoin = 'round';
     pen.lineWidth = 1.5;
-    trace(frames.comMargin, (first, last) => {
+    trace(frames.comMargin, this.margin.top, (first, last) => {
       pen.strokeStyle = pen.fillStyle = theme.margin;
       pen.stroke();
       pen.lineTo(this.x(frames.t[last]), this.y(0));
@@ -123,7 +126,7 @@ export class Timeline {
       pen.globalAlpha = 1;
     });
     pen.strokeStyle = theme.clearance;
-    trace(frames.clearance, () => pen.stroke());
+    trace(frames.clearance, this.clearance.top, () => pen.stroke());
   }
 
   // Each frame colours the strip half-way to its neighbours, and nothing beyond the first and last.
@@ -193,12 +196,26 @@ export class Timeline {
   }
 }
 
-// The smallest round number that most of the values, all positive, stay below.
-function scaleOf(values) {
-  const sorted = values.slice().sort((a, b) => a - b);
-  const goal = sorted.length ? sorted[Math.floor(0.98 * (sorted.length - 1))] : 0.1;
-  const power = 10 ** Math.floor(Math.log10(goal));
-  return power * [1, 2, 4, 6, 8, 10].find((k) => k * power >= goal * 0.999);
+// A round top that most values stay below, and the room below zero as a share of it.
+class Scale {
+  constructor(run) {
+    const values = Array.from(run).filter(Number.isFinite).sort((a, b) => a - b);
+    const negative = values.filter((value) => value < 0);
+    const positive = values.filter((value) => value > 0);
+    this.known = values.length > 0;
+    const goal = positive.length ? positive[Math.floor(0.98 * (positive.length - 1))] : 0.1;
+    const power = 10 ** Math.floor(Math.log10(goal));
+    this.top = power * [1, 2, 4, 6, 8, 10].find((k) => k * power >= goal * 0.999);
+    // Enough to read a label, at most as much as above zero.
+    this.below = negative.length ? Math.min(1, Math.max(0.3, -negative[0] / this.top)) : 0;
+  }
+
+  label(share) {
+    if (!this.known) return '';
+    const value = share * this.top;
+    if (value === 0) return '0';
+    return this.top < 0.0995 ? Number((1000 * value).toPrecision(2)) + ' mm' : Number(value.toPrecision(2)) + ' m';
+  }
 }
 
 function hatch(pen, colour) {

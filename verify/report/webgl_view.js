@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import {BalanceMarks} from './balance.js';
 import {CameraRig} from './camera.js';
 import {addNotice} from './notice.js';
+import {CORNERS} from './projection.js';
 import {RobotModel} from './robot.js';
 import {SceneModel} from './scene.js';
 
@@ -37,6 +38,7 @@ export class WebglView {
     this.rig.camera.add(this.model.lamp, this.model.lamp.target);
     this.overlay = new THREE.Scene();
     this.overlay.add(this.model.occluders, this.marks.overlay);
+    this.rig.corner = this.clearestCorner(data);
     if (this.model.grids.length > 0) addNotice(stage, 'Grid: 0.1 m, 1 m');
     this.onDrawn = () => {};
     this.resize();
@@ -94,6 +96,30 @@ export class WebglView {
     this.renderer.render(this.scene, this.rig.camera);
     this.renderer.clearDepth();
     this.renderer.render(this.overlay, this.rig.camera);
+  }
+
+  // Looks from each corner at the bodies, at a few instants, and counts those that obstacles hide.
+  clearestCorner({frames}) {
+    this.scene.updateMatrixWorld();
+    const ray = new THREE.Raycaster();
+    const small = this.model.pickable.filter((mesh) => !mesh.material.isShaderMaterial &&
+      mesh.geometry.attributes.position.count < 30000);
+    const target = new THREE.Vector3(), eye = new THREE.Vector3();
+    const hidden = CORNERS.map((corner) => {
+      eye.fromArray(this.rig.eyeAt(corner, this.rig.fittingDistance()));
+      let count = 0;
+      for (const t of [0, 0.25, 0.5, 0.75, 1]) {
+        const frame = frames.nearest(t * frames.t[frames.count - 1]);
+        for (let b = 0; b < frames.bodyCount; b += Math.ceil(frames.bodyCount / 16)) {
+          target.fromArray(frames.poseOf(frame, b));
+          ray.far = target.distanceTo(eye);
+          ray.set(eye, target.sub(eye).normalize());
+          if (ray.intersectObjects(small).length > 0) ++count;
+        }
+      }
+      return count;
+    });
+    return CORNERS[hidden.indexOf(Math.min(...hidden))];
   }
 
   // What lies under a point of the stage, in pixels from its corner.
