@@ -3,11 +3,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "cguide/exact/core/path.h"
+#include "cguide/exact/equilibrium.h"
 #include "cguide/numeric/contact.h"
 
 namespace cguide::numeric {
@@ -87,6 +89,9 @@ struct SettledStability {
   StabilityAnswer answer;
   StabilityStage stage = StabilityStage::kUndecided;
   std::string reason;  ///< one clause for the user where undecided, else empty
+  /** The exact twin's verdict on the stored contacts and its proof, where it was asked; its contact
+   indices are into the query. `answer` holds the same rounded to doubles. */
+  std::optional<exact::StabilityResult> exact;
 };
 
 /** TryStability, else exact::DecideStability on the stored contacts.

@@ -106,34 +106,55 @@ Vector6d ToDoubles(const Vector6q& y) {
   return rounded;
 }
 
-SettledStability Undecided(std::string reason) {
-  SettledStability settled;
-  settled.reason = std::move(reason);
-  return settled;
+void Decline(std::string reason, SettledStability* settled) {
+  settled->answer = StabilityAnswer{};
+  settled->stage = StabilityStage::kUndecided;
+  settled->reason = std::move(reason);
 }
 
-SettledStability Settle(const StabilityQuery& query, const exact::StabilityResult& result,
-                        StabilityWorkspace* workspace) {
+// The exact verdict holds or fails: does it survive the errors?
+void Settle(const StabilityQuery& query, const exact::StabilityResult& result,
+            StabilityWorkspace* workspace, SettledStability* settled) {
   const ScaledContacts& scaled = workspace->scratch->contacts;
   Balance& balance = workspace->scratch->balance;
-  SettledStability settled;
-  settled.stage = StabilityStage::kExact;
-  settled.answer.verdict = result.verdict;
+  settled->stage = StabilityStage::kExact;
+  settled->answer.verdict = result.verdict;
+  const bool holds = result.verdict == Verdict::kHolds;
   bool survives = IsExact(query);
-  if (result.verdict == Verdict::kHolds) {
-    const bool fits = ToBalance(scaled, result.forces, &balance);
-    if (fits && ProveInterior(scaled, &balance)) survives = true;
-    if (fits) ReportBalance(scaled, balance, &settled.answer.forces);
-  } else {
-    settled.answer.separator.y = ToDoubles(result.separator);
-    Vector6d y = settled.answer.separator.y;
-    y.tail<3>() *= scaled.length;
-    if (ProveOutside(scaled, y)) survives = true;
+  if (holds && ToBalance(scaled, result.forces, &balance)) {
+    survives |= ProveInterior(scaled, &balance);
+    ReportBalance(scaled, balance, &settled->answer.forces);
   }
-  if (survives) return settled;
-  return Undecided(result.verdict == Verdict::kHolds
-                       ? "stable as stored, but by less than the error of the contacts"
-                       : "unstable as stored, but by less than the error of the contacts");
+  if (!holds) {
+    Vector6d y = ToDoubles(result.separator);
+    settled->answer.separator.y = y;
+    y.tail<3>() *= scaled.length;
+    survives |= ProveOutside(scaled, y);
+  }
+  if (!survives) {
+    Decline(std::string(holds ? "stable" : "unstable") +
+                " as stored, but by less than the error of the contacts",
+            settled);
+  }
+}
+
+void DecideExactly(const StabilityQuery& query, StabilityWorkspace* workspace,
+                   SettledStability* settled) {
+  const ScaledContacts& scaled = workspace->scratch->contacts;
+  exact::StabilityResult result =
+      exact::DecideStability(LiftQuery(query, scaled, scaled.num_certain));
+  const bool depends = scaled.num_certain < scaled.count && result.verdict != Verdict::kHolds;
+  // Where the certain contacts do not carry the robot, only a refutation with all of them counts.
+  if (depends) result = exact::DecideStability(LiftQuery(query, scaled, scaled.count));
+  if (depends && result.verdict != Verdict::kFails) {
+    Decline("depends on contacts that may or may not be active", settled);
+  } else if (result.verdict == Verdict::kUndecided) {
+    Decline(exact::Describe(result), settled);
+  } else {
+    Settle(query, result, workspace, settled);
+  }
+  for (exact::ContactForce& force : result.forces) force.contact = scaled.index[force.contact];
+  settled->exact = std::move(result);
 }
 
 }  // namespace
@@ -143,24 +164,17 @@ SettledStability Stability(const StabilityQuery& query, StabilityWorkspace* work
   settled.answer = TryStability(query, workspace);
   settled.stage = StabilityStage::kFast;
   if (settled.answer.verdict != Verdict::kUndecided) return settled;
-  ScaledContacts& scaled = workspace->scratch->contacts;
-  if (!ScaleContacts(query, &scaled))
-    return Undecided("a number is not finite or mass or gravity is zero");
+  if (!ScaleContacts(query, &workspace->scratch->contacts)) {
+    Decline("a number is not finite, or mass or gravity is zero", &settled);
+    return settled;
+  }
   for (const Contact& contact : query.contacts) {
-    if (contact.n_W.isZero(0)) return Undecided("a contact has no normal");
+    if (!contact.n_W.isZero(0)) continue;
+    Decline("a contact has no normal", &settled);
+    return settled;
   }
-  exact::StabilityResult result =
-      exact::DecideStability(LiftQuery(query, scaled, scaled.num_certain));
-  const bool more = scaled.num_certain < scaled.count;
-  if (result.verdict != Verdict::kHolds && more) {
-    // The certain contacts do not carry the robot; only a refutation with all of them counts now.
-    result = exact::DecideStability(LiftQuery(query, scaled, scaled.count));
-    if (result.verdict != Verdict::kFails) {
-      return Undecided("depends on contacts that may or may not be active");
-    }
-  }
-  if (result.verdict == Verdict::kUndecided) return Undecided(exact::Describe(result));
-  return Settle(query, result, workspace);
+  DecideExactly(query, workspace, &settled);
+  return settled;
 }
 
 }  // namespace cguide::numeric
