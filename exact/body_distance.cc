@@ -14,6 +14,8 @@ template <typename... Ts>
 struct Overloaded : Ts... {
   using Ts::operator()...;
 };
+template <typename... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
 
 ExactPiece Prepare(const Piece& piece, const PrepareOptions& options) {
   const LinkPlacement X = ExactPlacement(piece.X_WP);

@@ -3,9 +3,9 @@
 
 namespace cguide {
 
-void Require(bool ok, const char* what, std::source_location where) {
+void Require(bool ok, const char* what, const char* caller) {
   if (ok) return;
-  throw Error(Error::Code::kInvalidArgument, std::string(where.function_name()) + ": " + what);
+  throw Error(Error::Code::kInvalidArgument, std::string(caller) + ": " + what);
 }
 
 }  // namespace cguide

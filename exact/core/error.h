@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <source_location>
 #include <stdexcept>
 #include <string>
 
@@ -28,8 +27,9 @@ class Error : public std::runtime_error {
   Code code_;
 };
 
-/** Throws Error::kInvalidArgument naming the calling function unless `ok`. Always armed. */
-void Require(bool ok, const char* what,
-             std::source_location where = std::source_location::current());
+/** Throws Error::kInvalidArgument naming the calling function unless `ok`. Always armed.
+ `caller` is filled in by the compiler; the builtin is used because clang 14 has no
+ std::source_location. */
+void Require(bool ok, const char* what, const char* caller = __builtin_FUNCTION());
 
 }  // namespace cguide

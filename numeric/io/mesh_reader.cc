@@ -1,10 +1,8 @@
 #include "cguide/numeric/io/mesh_reader.h"
 
-#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
@@ -66,27 +64,17 @@ class VertexMerger {
   std::unordered_map<Key, int, Hash> index_;
 };
 
-// Collects the triangles of a node and of those below it.
+// Adds the importer's triangles, its floats times the scale in doubles.
 class Collector {
  public:
   Collector(const Eigen::Vector3d& scale, const std::string& place, TriangleMesh* mesh)
-      : scale_(scale), place_(place), mesh_(*mesh), merger_(&mesh->vertices) {}
+      : scale_(scale),
+        flip_(scale.prod() < 0),
+        place_(place),
+        mesh_(*mesh),
+        merger_(&mesh->vertices) {}
 
-  void Add(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& X_parent) {
-    // Products of the importer's floats, formed in doubles; the identity leaves points unchanged.
-    Eigen::Matrix4d X = X_parent;
-    if (!node.mTransformation.IsIdentity()) {
-      X = X_parent *
-          Eigen::Map<const Eigen::Matrix<float, 4, 4, Eigen::RowMajor>>(&node.mTransformation.a1)
-              .cast<double>();
-    }
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) AddMesh(*scene.mMeshes[node.mMeshes[i]], X);
-    for (unsigned i = 0; i < node.mNumChildren; ++i) Add(scene, *node.mChildren[i], X);
-  }
-
- private:
-  void AddMesh(const aiMesh& source, const Eigen::Matrix4d& X) {
-    const bool flip = X.topLeftCorner<3, 3>().determinant() * scale_.prod() < 0;
+  void Add(const aiMesh& source) {
     for (unsigned f = 0; f < source.mNumFaces; ++f) {
       const aiFace& face = source.mFaces[f];
       if (face.mNumIndices != 3) continue;  // points and lines bound no matter
@@ -95,19 +83,19 @@ class Collector {
       }
       std::array<int, 3> triangle;
       for (int c = 0; c < 3; ++c) {
-        const unsigned index = face.mIndices[flip ? 2 - c : c];
-        if (index >= source.mNumVertices)
+        const unsigned index = face.mIndices[flip_ ? 2 - c : c];
+        if (index >= source.mNumVertices) {
           Refuse(place_, "a triangle names a vertex that does not exist");
-        triangle[c] = AddVertex(source.mVertices[index], X);
+        }
+        triangle[c] = AddVertex(source.mVertices[index]);
       }
       mesh_.triangles.push_back(triangle);
     }
   }
 
-  int AddVertex(const aiVector3D& vertex, const Eigen::Matrix4d& X) {
-    const Eigen::Vector3d p(vertex.x, vertex.y, vertex.z);
-    const Eigen::Vector3d moved = X.topLeftCorner<3, 3>() * p + X.topRightCorner<3, 1>();
-    const Eigen::Vector3d v = moved.cwiseProduct(scale_);
+ private:
+  int AddVertex(const aiVector3D& vertex) {
+    const Eigen::Vector3d v = Eigen::Vector3d(vertex.x, vertex.y, vertex.z).cwiseProduct(scale_);
     if (!v.allFinite()) Refuse(place_, "a coordinate is NaN or infinite");
     if (v.cwiseAbs().maxCoeff() > kLargestNumber) {
       Refuse(place_, "a coordinate exceeds 1e6 m; check the units and the scale");
@@ -116,6 +104,7 @@ class Collector {
   }
 
   const Eigen::Vector3d scale_;
+  const bool flip_;
   const std::string& place_;
   TriangleMesh& mesh_;
   VertexMerger merger_;
@@ -133,14 +122,15 @@ TriangleMesh ReadMesh(const std::filesystem::path& file, const Eigen::Vector3d& 
   TriangleMesh mesh;
   try {
     Assimp::Importer importer;
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     const aiScene* scene = importer.ReadFileFromMemory(guarded.bytes.data(), guarded.bytes.size(),
                                                        aiProcess_Triangulate, guarded.hint);
-    if (scene == nullptr || scene->mRootNode == nullptr) {
+    if (scene == nullptr) {
       Refuse(place, std::string("cannot be read as a mesh (") + importer.GetErrorString() +
                         "); the file may be damaged");
     }
-    Collector(scale, place, &mesh).Add(*scene, *scene->mRootNode, Eigen::Matrix4d::Identity());
+    // The formats that reach the importer have no transforms: each mesh of the scene stands once.
+    Collector collector(scale, place, &mesh);
+    for (unsigned i = 0; i < scene->mNumMeshes; ++i) collector.Add(*scene->mMeshes[i]);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {

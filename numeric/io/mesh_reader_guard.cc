@@ -1,5 +1,3 @@
-#include <tinyxml2.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -209,29 +207,6 @@ std::string PlainObj(const std::string& bytes, const std::string& place) {
   return plain;
 }
 
-// ---- DAE ----
-
-std::string UnitlessDae(std::string bytes, const std::string& place) {
-  tinyxml2::XMLDocument document;
-  if (document.Parse(bytes.data(), bytes.size()) != tinyxml2::XML_SUCCESS) {
-    RefuseLine(place, static_cast<std::size_t>(document.ErrorLineNum()),
-               std::string("malformed XML (") +
-                   tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()) +
-                   "); the file may be truncated");
-  }
-  auto* root = document.RootElement();
-  if (root == nullptr || std::strcmp(root->Name(), "COLLADA") != 0) {
-    Refuse(place, "the root element is not <COLLADA>");
-  }
-  auto* asset = root->FirstChildElement("asset");
-  auto* unit = asset == nullptr ? nullptr : asset->FirstChildElement("unit");
-  if (unit == nullptr) return bytes;
-  asset->DeleteChild(unit);
-  tinyxml2::XMLPrinter printer;
-  document.Print(&printer);
-  return printer.CStr();
-}
-
 }  // namespace
 
 GuardedMesh GuardMesh(std::string bytes, MeshFormat format, const std::string& place) {
@@ -244,7 +219,7 @@ GuardedMesh GuardMesh(std::string bytes, MeshFormat format, const std::string& p
     case MeshFormat::kObj:
       return {PlainObj(bytes, place), "obj"};
     case MeshFormat::kDae:
-      return {UnitlessDae(std::move(bytes), place), "dae"};
+      return {PlainObj(ObjFromDae(bytes, place), place), "obj"};
   }
   Refuse(place, "unknown mesh format");
 }

@@ -18,4 +18,12 @@ struct GuardedMesh {
  @throws Error (kBadInput) beginning with `place`. */
 GuardedMesh GuardMesh(std::string bytes, MeshFormat format, const std::string& place);
 
+/** The faces of a COLLADA file as OBJ: triangles, polylists and polygons of the visual scene, each
+ vertex moved by the transforms of its nodes in doubles and rounded to a float once. Up axis and
+ unit are not looked at. Faces under a mirroring transform are turned, so that their outside stays
+ outside.
+ @throws Error (kBadInput) with the line: malformed XML, numbers, counts, indices or references;
+ skins, strips, fans. */
+std::string ObjFromDae(const std::string& bytes, const std::string& place);
+
 }  // namespace cguide::numeric::io

@@ -21,15 +21,6 @@ TEST_CASE("OBJ is brought to vertices and faces with absolute indices") {
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\nv 0 0 1\nf 4 1 2 3\n");
 }
 
-TEST_CASE("a DAE without unit passes unchanged, with one it loses it") {
-  const std::string plain = "<COLLADA><asset><up_axis>Z_UP</up_axis></asset></COLLADA>";
-  CHECK(GuardMesh(plain, MeshFormat::kDae, "a.dae").bytes == plain);
-  const std::string inch = "<COLLADA><asset><unit meter=\"0.0254\"/></asset></COLLADA>";
-  const std::string bytes = GuardMesh(inch, MeshFormat::kDae, "a.dae").bytes;
-  CHECK(bytes.find("unit") == std::string::npos);
-  CHECK(bytes.find("asset") != std::string::npos);
-}
-
 TEST_CASE("the name of a text STL may contain its key words") {
   const std::string text =
       "solid facet vertex endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"

@@ -173,11 +173,11 @@ TEST_CASE("every prefix of a mesh file is refused or read, never worse") {
   for (const auto& [name, bytes] : files) {
     CAPTURE(name);
     int refused = 0;
-    for (std::size_t size = 0; size < bytes.size(); ++size) {
+    for (std::size_t size = 0; size < bytes.size(); size += 7) {
       const auto file = folder.Write(name, bytes.substr(0, size));
       if (RefusalOf([&] { ReadMesh(file, Eigen::Vector3d::Ones()); })) ++refused;
     }
-    CHECK(refused > static_cast<int>(bytes.size()) / 2);
+    CHECK(refused > static_cast<int>(bytes.size() / 7) / 2);
   }
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("changed bytes in a mesh file never do worse than an error") {
       {"a.obj", ReadText(Fixture("io/meshes/brick.obj"))},
       {"a.dae", ReadText(Fixture("io/meshes/brick.dae"))}};
   for (const auto& [name, bytes] : files) {
-    for (int round = 0; round < 300; ++round) {
+    for (int round = 0; round < 100; ++round) {
       std::string changed = bytes;
       for (int i = 0; i < 2; ++i) changed[rng() % changed.size()] = static_cast<char>(rng() % 256);
       const auto file = folder.Write(name, changed);
