@@ -5,6 +5,7 @@
 
 #include "cguide/exact/core/model.h"
 #include "cguide/exact/core/path.h"
+#include "cguide/numeric/fp_guard.h"
 
 namespace cguide::numeric {
 

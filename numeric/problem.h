@@ -21,6 +21,7 @@ struct Problem {
   Configuration start;
   Configuration goal;
   std::vector<std::string> warnings;  ///< for the user, one sentence each
+  std::vector<std::string> notes;     ///< what is worth knowing but no cause for doubt
   std::string model_digest;           ///< "sha256:<hex>" of the canonical model's text
   std::string problem_digest;         ///< "sha256:<hex>" of the problem file's bytes
 };

@@ -11,6 +11,7 @@
 #include "cguide/exact/core/path.h"
 #include "cguide/exact/equilibrium.h"
 #include "cguide/numeric/contact.h"
+#include "cguide/numeric/fp_guard.h"
 
 namespace cguide::numeric {
 

@@ -1,6 +1,7 @@
 #include "cguide/numeric/io/problem_reader.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <set>
 
@@ -96,6 +97,19 @@ Model ReadModelParts(const YamlView& view, const RobotDescription& description,
   return model;
 }
 
+// A hull that adds much to its mesh makes a robot bulkier than it is; a tenth is worth saying.
+std::vector<std::string> HullNotes(const RobotDescription& description) {
+  std::vector<std::string> notes;
+  for (const HullVolume& volume : description.hull_volumes) {
+    if (!(volume.hull > 1.1 * volume.mesh)) continue;
+    char text[64];
+    std::snprintf(text, sizeof text, "%.3g to %.3g litres", 1000 * volume.mesh, 1000 * volume.hull);
+    notes.push_back("link \"" + volume.link + "\": the convex hull of " + volume.mesh_file +
+                    " raises its volume from " + text);
+  }
+  return notes;
+}
+
 Problem ReadParts(const YamlView& view) {
   view.AllowKeys({"schema", "robot", "gravity", "scene", "contact", "guide", "sampling", "postures",
                   "start", "goal"});
@@ -105,6 +119,7 @@ Problem ReadParts(const YamlView& view) {
   const RobotDescription description = AtPlace(robot.Place(), [&] { return ReadRobot(files); });
   Problem problem;
   problem.warnings = description.warnings;
+  problem.notes = HullNotes(description);
   problem.model = ReadModelParts(view, description, files.packages, &problem.warnings);
 
   const KinematicTree tree(description.robot);

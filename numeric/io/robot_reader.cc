@@ -13,12 +13,42 @@ namespace {
 
 [[noreturn]] void Refuse(const std::string& what) { throw Error(Error::Code::kBadInput, what); }
 
+double SignedVolume(const std::vector<Eigen::Vector3d>& vertices,
+                    const std::vector<std::array<int, 3>>& triangles) {
+  double volume = 0;
+  for (const auto& t : triangles) {
+    volume += vertices[t[0]].dot(vertices[t[1]].cross(vertices[t[2]])) / 6;
+  }
+  return volume;
+}
+
+// What the hull adds to a mesh that has a volume; nothing where some part of it is open.
+std::optional<HullVolume> MeasureHull(const std::string& link, const TriangleMesh& mesh,
+                                      const Hull& hull, const std::string& place) {
+  HullVolume result{link, place, 0, SignedVolume(hull.vertices, hull.faces)};
+  for (const PieceShape& piece : MakePieces(mesh, MeshUse::kAuto, place)) {
+    const auto* solid = std::get_if<Solid>(&piece);
+    if (solid == nullptr) return std::nullopt;
+    result.mesh += std::abs(SignedVolume(solid->vertices, solid->triangles));
+  }
+  return result;
+}
+
 struct ShapeReader {
   const RobotFiles& files;
+  const std::string& link;
   const std::string& place;
-  ConvexShape operator()(const UrdfMesh& mesh) const {
-    const auto file = ResolveUri(mesh.uri, files.urdf, files.packages, place);
-    return ReadAt(place, [&] { return MakeHull(ReadMesh(file, mesh.scale), file.string()); });
+  std::vector<HullVolume>* volumes;
+  ConvexShape operator()(const UrdfMesh& source) const {
+    const auto file = ResolveUri(source.uri, files.urdf, files.packages, place);
+    return ReadAt(place, [&] {
+      const TriangleMesh mesh = ReadMesh(file, source.scale);
+      Hull hull = MakeHull(mesh, file.string());
+      if (auto volume = MeasureHull(link, mesh, hull, file.filename().string())) {
+        volumes->push_back(std::move(*volume));
+      }
+      return hull;
+    });
   }
   template <typename Shape>
   ConvexShape operator()(const Shape& shape) const {
@@ -26,14 +56,15 @@ struct ShapeReader {
   }
 };
 
-Link MakeLink(const UrdfLink& source, const RobotFiles& files) {
+Link MakeLink(const UrdfLink& source, const RobotFiles& files, std::vector<HullVolume>* volumes) {
   Link link;
   link.name = source.name;
   link.mass = source.mass;
   link.com_L = source.com_L;
   for (const UrdfCollision& collision : source.collisions) {
     link.shapes.push_back(
-        {collision.X_LS, std::visit(ShapeReader{files, collision.place}, collision.geometry)});
+        {collision.X_LS, std::visit(ShapeReader{files, source.name, collision.place, volumes},
+                                    collision.geometry)});
   }
   return link;
 }
@@ -90,7 +121,8 @@ Joint MakeJoint(const UrdfDocument& document, const UrdfJoint& source) {
   return joint;
 }
 
-Robot MakeRobot(const UrdfDocument& document, const RobotFiles& files) {
+Robot MakeRobot(const UrdfDocument& document, const RobotFiles& files,
+                std::vector<HullVolume>* volumes) {
   Robot robot;
   robot.name = document.name;
   std::vector<int> index(document.links.size());
@@ -110,7 +142,9 @@ Robot MakeRobot(const UrdfDocument& document, const RobotFiles& files) {
     Refuse(document.file + ": robot \"" + document.name +
            "\" has no mass; give its links <inertial> with <mass>");
   }
-  for (int link : document.link_order) robot.links.push_back(MakeLink(document.links[link], files));
+  for (int link : document.link_order) {
+    robot.links.push_back(MakeLink(document.links[link], files, volumes));
+  }
   AssignBodiesAndColumns(&robot);
   return robot;
 }
@@ -131,7 +165,7 @@ void CheckRobot(const Robot& robot, const std::string& file) {
 RobotDescription ReadRobot(const RobotFiles& files) {
   UrdfDocument document = ParseUrdf(XmlFile(files.urdf));
   RobotDescription description;
-  description.robot = MakeRobot(document, files);
+  description.robot = MakeRobot(document, files, &description.hull_volumes);
   description.warnings = std::move(document.warnings);
   CheckRobot(description.robot, document.file);
   if (!files.srdf.empty()) ReadSrdf(files.srdf, &description);

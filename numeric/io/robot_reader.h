@@ -37,12 +37,21 @@ struct EndEffector {
   std::string parent_link;
 };
 
+/** Volumes of a closed collision mesh and of the hull that stands for it (m^3, plain floats). */
+struct HullVolume {
+  std::string link;
+  std::string mesh_file;
+  double mesh = 0;
+  double hull = 0;
+};
+
 /** What URDF and SRDF say. */
 struct RobotDescription {
   Robot robot;
   std::vector<NamedPosture> postures;
   std::vector<std::pair<int, int>> disabled_bodies;  ///< body pairs i < j, sorted, without repeats
   std::vector<EndEffector> end_effectors;
+  std::vector<HullVolume> hull_volumes;  ///< one per closed collision mesh
   std::vector<std::string> warnings;
 };
 

@@ -205,6 +205,7 @@ int RunDoctor(const DoctorArguments& arguments) {
   if (!arguments.problem.empty()) {
     const Problem problem = numeric::io::ReadProblem(arguments.problem);
     for (const std::string& warning : problem.warnings) findings.Warn(warning);
+    for (const std::string& note : problem.notes) findings.Note(note);
     const World world(problem.model);
     numeric::GuideWorkspace workspace(world);
     CheckRobot(problem, world, &findings);
