@@ -48,22 +48,34 @@ void SolveOnce(std::span<const Task> tasks, double damping, TaskStackWorkspace* 
   }
 }
 
-// Freezes the columns that leave their limits at the value that reaches the limit.
-bool FreezeColumns(const KinematicTree& tree, const Configuration& q, TaskStackWorkspace* ws,
-                   VectorXd* step) {
+// The factor that brings the whole step within the clamps.
+double ClampScale(const TaskStackOptions& options, const VectorXd& step) {
+  double scale = 1;
+  const auto limit = [&scale](double size, double most) {
+    if (size * scale > most) scale = most / size;
+  };
+  limit(step.head<3>().norm(), options.max_translation);
+  limit(step.segment<3>(3).norm(), options.max_rotation);
+  for (Eigen::Index i = 6; i < step.size(); ++i) limit(std::abs(step[i]), options.max_rotation);
+  return scale;
+}
+
+// Freezes the columns that the scaled step carries out of their limits, at the value that reaches
+// the limit. A step that will be shortened anyway leaves its columns free as long as it can.
+bool FreezeColumns(const KinematicTree& tree, const Configuration& q, double scale,
+                   TaskStackWorkspace* ws, VectorXd* step) {
   bool changed = false;
   for (int i = 0; i < tree.num_columns; ++i) {
     if (ws->frozen[6 + i] || !tree.limits[i].bounded) continue;
     const double value = q.joints[i];
     double& rate = (*step)[6 + i];
-    if (value + rate > tree.limits[i].upper) {
-      rate = std::min(0.0, tree.limits[i].upper - value);
-    } else if (value + rate < tree.limits[i].lower) {
-      rate = std::max(0.0, tree.limits[i].lower - value);
+    if (value + scale * rate > tree.limits[i].upper) {
+      rate = tree.limits[i].upper - value;
+    } else if (value + scale * rate < tree.limits[i].lower) {
+      rate = tree.limits[i].lower - value;
     } else {
       continue;
     }
-    if (value > tree.limits[i].upper || value < tree.limits[i].lower) rate = 0;
     ws->frozen[6 + i] = 1;
     changed = true;
   }
@@ -81,16 +93,11 @@ VectorXd SolveTaskStack(const KinematicTree& tree, const Configuration& q,
   workspace->weight.segment<3>(3).setConstant(1 / std::sqrt(options.rotation_weight));
   workspace->frozen.assign(n, 0);
   VectorXd step = VectorXd::Zero(n);
+  double scale = 1;
   for (int round = 0; round <= tree.num_columns; ++round) {
     SolveOnce(tasks, options.damping, workspace, &step);
-    if (!FreezeColumns(tree, q, workspace, &step)) break;
-  }
-  double scale = 1;
-  scale = std::min(scale, options.max_translation / std::max(1e-300, step.head<3>().norm()));
-  scale = std::min(scale, options.max_rotation / std::max(1e-300, step.segment<3>(3).norm()));
-  if (tree.num_columns > 0) {
-    const double joints = step.tail(tree.num_columns).cwiseAbs().maxCoeff();
-    scale = std::min(scale, options.max_rotation / std::max(1e-300, joints));
+    scale = ClampScale(options, step);
+    if (!FreezeColumns(tree, q, scale, workspace, &step)) break;
   }
   return scale * step;
 }
