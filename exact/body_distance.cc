@@ -39,9 +39,7 @@ Rational AtLeastZero(const Rational& x) { return x < 0 ? Rational(0) : x; }
 /** Gathers pair answers into the answer of a union: the least distance, the weakest verdict. */
 class Gathering {
  public:
-  explicit Gathering(const Rational& threshold) : threshold_(threshold) {
-    skip_ = std::numeric_limits<double>::infinity();
-  }
+  explicit Gathering(const Rational& threshold) : threshold_(threshold) {}
   const Rational& threshold() const { return threshold_; }
 
   /** Whether sets with bounds this far apart can be left out: they hold, and are not nearest. A gap
@@ -52,30 +50,26 @@ class Gathering {
   }
 
   void Add(const Separation& part) {
+    const Rational lower = count_ == 0 ? part.lower : std::min(result_.lower, part.lower);
     if (count_ == 0 || part.upper < result_.upper) {
-      const Rational lower = count_ == 0 ? part.lower : std::min(result_.lower, part.lower);
-      const Verdict verdict = result_.verdict;
       result_ = part;
-      result_.lower = lower;
-      result_.verdict = verdict;
       skip_ = std::max(RoundUp(result_.upper), RoundUp(threshold_));
-    } else {
-      result_.lower = std::min(result_.lower, part.lower);
     }
+    result_.lower = lower;
     Weaken(part.verdict);
     ++count_;
-  }
-
-  /** A further condition of the same question, without a distance. */
-  void Weaken(Verdict verdict) {
-    if (worst_ == Verdict::kFails || verdict == Verdict::kHolds) return;
-    worst_ = verdict;
   }
 
   /** Both sets share a point for certain. */
   void Meet() {
     worst_ = Verdict::kFails;
     result_.lower = result_.upper = 0;
+  }
+
+  /** They may share a point, for all that is known. */
+  void MayMeet() {
+    Weaken(Verdict::kUndecided);
+    result_.lower = 0;
   }
 
   Separation Take() {
@@ -85,11 +79,16 @@ class Gathering {
   }
 
  private:
+  void Weaken(Verdict verdict) {
+    if (worst_ == Verdict::kFails || verdict == Verdict::kHolds) return;
+    worst_ = verdict;
+  }
+
   Rational threshold_;
   Separation result_;
   Verdict worst_ = Verdict::kHolds;
   int count_ = 0;
-  double skip_;
+  double skip_ = std::numeric_limits<double>::infinity();
 };
 
 /** Two convex sets. Support functions move by at most the errors e with the points, so the true
@@ -178,11 +177,8 @@ void AddMesh(const ConvexBracket& a, const ExactMesh& mesh, int part_a, int part
   }
   if (!mesh.is_solid) return;
   const Verdict outside = OutsideSolid(a, mesh.triangles, gathering->threshold());
-  if (outside == Verdict::kFails) {
-    gathering->Meet();
-  } else {
-    gathering->Weaken(outside);
-  }
+  if (outside == Verdict::kFails) gathering->Meet();
+  if (outside == Verdict::kUndecided) gathering->MayMeet();
 }
 
 }  // namespace

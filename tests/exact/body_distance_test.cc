@@ -156,6 +156,16 @@ TEST_CASE("Inside a solid is collision, inside a surface is not, and a cavity is
   }
 }
 
+TEST_CASE("A body inside a solid, no deeper than the skin, is not told to be apart from it") {
+  const Model model = OneLink(Sphere{0.0078125}, {{Pose{}, CubeMesh<Solid>()}});
+  const Vector3q shallow{0, 0, Rational(99, 100)};
+  const Separation answer = Ask(model, shallow, Rational(-1, 50));
+  CHECK(answer.verdict == Verdict::kUndecided);
+  CHECK(answer.lower == 0);
+  CHECK(Ask(model, shallow, Rational(-1, 200)).verdict == Verdict::kFails);
+  CHECK(Ask(model, shallow, 0).verdict == Verdict::kFails);
+}
+
 TEST_CASE("The round side of a cylinder is bracketed as tightly as its prisms allow") {
   // The nearest point is between the directions of the prisms: 11 degrees of a 64-gon's 5.6.
   const double angle = 11 * M_PI / 180;
