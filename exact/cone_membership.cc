@@ -43,6 +43,7 @@ void Balance(const Rational& target_scale, std::vector<IntegerVector>* columns,
 /** A vector orthogonal to all generators, not zero; none where they span the space. Found as the
  rejection of a unit vector by Gram-Schmidt without normalisation. */
 std::optional<VectorXq> Normal(const std::vector<VectorXq>& generators, Eigen::Index size) {
+  if (Rank(generators) == size) return std::nullopt;
   std::vector<VectorXq> basis;
   const auto reject = [&basis](VectorXq v) {
     for (const VectorXq& b : basis) {
@@ -54,7 +55,6 @@ std::optional<VectorXq> Normal(const std::vector<VectorXq>& generators, Eigen::I
   for (const VectorXq& g : generators) {
     VectorXq v = reject(g);
     if (!IsZero(v)) basis.push_back(Primitive(v));
-    if (static_cast<Eigen::Index>(basis.size()) == size) return std::nullopt;
   }
   for (Eigen::Index k = 0; k < size; ++k) {
     VectorXq unit = VectorXq::Zero(size);

@@ -71,7 +71,8 @@ Matrix3q RotationOf(const Quaternion& q) {
 int Rank(const std::vector<VectorXq>& vectors) {
   std::vector<VectorXq> basis;  // each with its own pivot, where it is the only reduced one
   std::vector<Eigen::Index> pivots;
-  for (VectorXq v : vectors) {
+  for (const VectorXq& given : vectors) {
+    VectorXq v = Primitive(given);  // scale does not matter, and the numbers stay small
     for (std::size_t k = 0; k < basis.size(); ++k) {
       const Rational factor = v[pivots[k]] / basis[k][pivots[k]];
       if (factor == 0) continue;

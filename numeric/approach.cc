@@ -86,9 +86,9 @@ void AppendBody(const World& world, const BodySites& body, double reach, int per
 
 }  // namespace
 
-// Most questions are answered near the obstacles, so the reach grows in steps: a body whose ball keeps
-// farther away costs one comparison per piece. What lies within a reach is found whole, hence the
-// first `count` of the list are the nearest there are.
+// Most questions are answered near the obstacles, so the reach grows in steps: a body whose ball
+// keeps farther away costs one comparison per piece. What lies within a reach is found whole, hence
+// the first `count` of the list are the nearest there are.
 void FindApproaches(const World& world, const ApproachOptions& options, Workspace* workspace,
                     std::vector<Approach>* approaches) {
   approaches->clear();

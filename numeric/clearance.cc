@@ -68,7 +68,8 @@ void SetOverlap(DirectedClearance* result) {
   result->lo = result->hi = 0;
 }
 
-DirectedClearance Overlapping(const Convex& a, const Convex& b, const GjkResult& gjk) {
+DirectedClearance Overlapping(const Convex& a, const Convex& b, const GjkResult& gjk,
+                              StageCounts* counts) {
   DirectedClearance result;
   const double error = a.error + b.error;
   result.a_W = a.c + gjk.a;
@@ -80,11 +81,12 @@ DirectedClearance Overlapping(const Convex& a, const Convex& b, const GjkResult&
     SetOverlap(&result);
     return result;
   }
-  // Touching as far as doubles can tell: the witnesses bound the distance from above. A simplex of
-  // four points holds the origin up to rounding, where a and b were never formed.
-  const double bound = gjk.overlap && gjk.size == 4 ? 0 : (result.a_W - result.b_W).norm();
+  // Touching as far as doubles can tell: the witnesses, convex combinations, bound the distance.
+  const double bound = (result.a_W - result.b_W).norm() - a.radius - b.radius;
   result.lo = 0;
-  result.hi = std::max(0.0, bound - a.radius - b.radius) + 4 * error;
+  result.hi = std::max(0.0, bound) + 2 * error;
+  result.depth = 0;
+  if (result.hi > kWide) AskFcl(a, b, &result, counts);
   return result;
 }
 
@@ -115,7 +117,7 @@ DirectedClearance ConvexClearance(const Convex& a, const Convex& b, double cutof
   GjkResult gjk;
   Gjk(a, b, D, INFINITY, &gjk);
   const double length = gjk.v.norm();
-  if (gjk.overlap || length - error <= a.radius + b.radius) return Overlapping(a, b, gjk);
+  if (gjk.overlap || length - error <= a.radius + b.radius) return Overlapping(a, b, gjk, counts);
   const Vector3d n = gjk.v / length;
   TryPoints(a, b, a.c + gjk.a - a.radius * n, b.c + gjk.b + b.radius * n, &result);
   TryDirection(a, b, n, &result);

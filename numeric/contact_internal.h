@@ -36,6 +36,23 @@ Eigen::Vector3d ClosestPoint(const Geometry& g, const SiteCandidate& owner,
 Verdict StaysClosest(const Geometry& g, const SiteCandidate& owner, const Eigen::Vector3d& x,
                      const Eigen::Vector3d& y, double seam, double error);
 
+/** Whether no solid has a point of its inside within `seam` of c's y that is nearer to x. `error`
+ bounds the error of y.
+
+ Let z* be the point of the ball of radius seam about y on the way to x (x itself if it is nearer).
+ If a point of the solid in the ball is nearer to x than y is, then either some triangle has such a
+ point, which StaysClosest sees, or the cap {|z - y| <= seam, |z - x| < |x - y|}, which is connected
+ and holds z*, meets the solid without meeting its surface, so that z* is in the solid: its winding
+ number is asked. */
+Verdict StaysOutsideSolids(const Geometry& g, const std::vector<SiteCandidate>& candidates,
+                           const SiteCandidate& c, double seam, double error);
+
+/** Where a skin applies, makes distances and normals of candidates that touch or have sunk in the
+ signed ones: leaving boxes and hulls through their nearest face that no neighbour covers, triangles
+ towards the side the body is on. */
+void ApplySkin(const Geometry& g, const PlacedSite& site, double seam,
+               std::vector<SiteCandidate>* candidates);
+
 /** The contacts of one site, appended. `near` are the pieces within reach. */
 void FindSiteContacts(const World& world, int site, const PlacedSite& placed,
                       const std::vector<int>& near, Workspace::Scratch* scratch,

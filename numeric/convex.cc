@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "cguide/numeric/convex_internal.h"
@@ -17,6 +18,7 @@ void LeaveBox(const Convex& s, const Vector3d& l, const Vector3d& x, PointProjec
   const double depth = s.half[axis] - std::abs(l[axis]) + s.radius;
   p->y = x + depth * p->n;
   p->distance = -depth;
+  p->n_error = 32 * kUnit;
 }
 
 void ProjectOnBox(const Convex& s, const Vector3d& x, PointProjection* p) {
@@ -28,6 +30,14 @@ void ProjectOnBox(const Convex& s, const Vector3d& x, PointProjection* p) {
   p->n = s.R * ((l - q) / d);
   p->y += s.radius * p->n;
   p->distance = d - s.radius;
+  p->n_reach = d;
+  const Vector3d inside = s.half - l.cwiseAbs();
+  if ((inside.array() < 0).count() == 1) {
+    p->face_margin = INFINITY;
+    for (int i = 0; i < 3; ++i) {
+      if (inside[i] >= 0) p->face_margin = std::min(p->face_margin, inside[i]);
+    }
+  }
 }
 
 void ProjectOnCylinder(const Convex& s, const Vector3d& x, PointProjection* p) {
@@ -40,6 +50,8 @@ void ProjectOnCylinder(const Convex& s, const Vector3d& x, PointProjection* p) {
   if (side <= 0 && cap <= 0) {
     const Vector3d n = side > cap ? radial : Vector3d(0, 0, sign);
     p->distance = std::max(side, cap);
+    p->n_reach = side > cap ? rho : 0;
+    p->face_margin = side > cap ? -1 : -side;
     p->n = s.R * n;
     p->y = x - p->distance * p->n;
     return;
@@ -50,6 +62,8 @@ void ProjectOnCylinder(const Convex& s, const Vector3d& x, PointProjection* p) {
   p->distance = (l - q).norm();
   p->n = s.R * ((l - q) / p->distance);
   p->y = s.c + s.R * q;
+  p->n_reach = cap > 0 ? p->distance : rho;
+  if (side <= 0) p->face_margin = -side;
 }
 
 // Where the point y of a convex set T is at |x - y| = hi from x, and every point of T is at least
@@ -68,6 +82,7 @@ void ProjectOnPoints(const Convex& s, const Vector3d& x, PointProjection* p) {
   if (gjk.overlap) {
     p->y = x;
     p->distance = 0;
+    p->distance_error += gjk.v.norm();
     p->n = (x - s.c).normalized();
     return;
   }
@@ -152,6 +167,16 @@ static Vector3d ClosestOnTriangle(const Vector3d& a, const Vector3d& b, const Ve
   const double sum = va + vb + vc;
   if (!(sum > 0)) return a;
   return a + vb / sum * ab + vc / sum * ac;
+}
+
+// |e x f - e' x f'| <= 2 error (|e| + |f|) (1 + tiny) + 16 u |e||f| for edges whose ends are within
+// `error`; dividing by the length at most doubles the relative error.
+TriangleNormal NormalOf(const Vector3d& a, const Vector3d& b, const Vector3d& c, double error) {
+  const Vector3d e = b - a, f = c - a, n = e.cross(f);
+  const double length = n.norm();
+  if (!(length > 0)) return {};
+  const double off = 3 * error * (e.norm() + f.norm()) + 16 * kUnit * e.norm() * f.norm();
+  return {n / length, 2 * off / length};
 }
 
 static Vector3d ClosestOnSegment(const Vector3d& a, const Vector3d& b, const Vector3d& x) {

@@ -97,11 +97,34 @@ struct PointProjection {
   double distance = 0;                           ///< signed, negative inside
   double distance_error = 0;  ///< bound on the error of `distance`, displacement of x not included
   double y_error = 0;         ///< likewise for y, where x is outside
+  /** Where n is a face's normal, how far the foot of x is inside that face: as long as errors are
+   smaller n does not depend on x. Negative elsewhere. */
+  double face_margin = -1;
+  double n_reach = 0;  ///< else n = w/|w| with |w| = n_reach > 0 and w within twice the errors of x
+  double n_error = -1;  ///< else a bound on the error of n, where >= 0
 };
+
+/** Bound on the error of p.n where x has an error `error` (that of the set included), or -1 where
+ nothing better is known than that n is along x - y. A face's normal is a column of R or a stored
+ unit vector, within 32 u. Elsewhere |w/|w| - w'/|w'|| <= 2 |w - w'|/|w|. */
+inline double NormalBound(const PointProjection& p, double error) {
+  if (p.n_error >= 0) return p.n_error;
+  if (p.face_margin > error) return 32 * kUnit;
+  return p.n_reach > 0 ? 4 * error / p.n_reach + 32 * kUnit : -1;
+}
 
 /** Closest point on the boundary of `s`, signed distance and bounds. The bounds hold where x is
  outside; inside a kPoints set the distance is only an estimate (>= -depth is not promised). */
 PointProjection ProjectPoint(const Convex& s, const Eigen::Vector3d& x);
+
+/** The unit normal of the triangle abc along (b - a) x (c - a), and a bound on its error where
+ every corner is within `error`; infinite where the triangle has no area. */
+struct TriangleNormal {
+  Eigen::Vector3d n = Eigen::Vector3d::UnitZ();
+  double error = INFINITY;
+};
+TriangleNormal NormalOf(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                        const Eigen::Vector3d& c, double error);
 
 /** As above for the closed triangle abc, which has no inside: distance >= 0. `error` bounds the
  displacement of its corners. */

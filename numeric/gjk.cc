@@ -52,16 +52,22 @@ void OfferTriangle(const DifferencePoint* s, int i, int j, int k, Candidate* bes
   Offer(s, {0, 3, {i, j, k, 0}, {wa / sum, wb / sum, wc / sum, 0}}, best);
 }
 
-// Whether the origin is inside the tetrahedron in plain floats, flat ones never.
-bool InsideTetrahedron(const DifferencePoint* s) {
+// Offers the origin itself as a combination of all four points where it is inside the tetrahedron
+// in plain floats; flat ones never qualify.
+bool InsideTetrahedron(const DifferencePoint* s, Candidate* inside) {
   const Vector3d a = s[1].w - s[0].w, b = s[2].w - s[0].w, c = s[3].w - s[0].w;
   const double volume = a.dot(b.cross(c));
   const double scale = a.norm() * b.norm() * c.norm();
   if (!(std::abs(volume) > 1e-13 * scale)) return false;
   const double sign = volume < 0 ? -1 : 1;
   const Vector3d &p = s[0].w, &q = s[1].w, &r = s[2].w, &t = s[3].w;
-  return sign * q.dot(r.cross(t)) >= 0 && sign * p.dot(t.cross(r)) >= 0 &&
-         sign * p.dot(q.cross(t)) >= 0 && sign * p.dot(r.cross(q)) >= 0;
+  const double weight[4] = {sign * q.dot(r.cross(t)), sign * p.dot(t.cross(r)),
+                            sign * p.dot(q.cross(t)), sign * p.dot(r.cross(q))};
+  const double sum = weight[0] + weight[1] + weight[2] + weight[3];
+  if (*std::min_element(weight, weight + 4) < 0 || !(sum > 0)) return false;
+  *inside = {
+      0, 4, {0, 1, 2, 3}, {weight[0] / sum, weight[1] / sum, weight[2] / sum, weight[3] / sum}};
+  return true;
 }
 
 // The best of all faces: every vertex, edge and triangle is tried, which costs little and needs no
@@ -123,7 +129,9 @@ void Gjk(const Convex& a, const Convex& b, const Vector3d& v0, double enough, Gj
     // v.w = |v|^2 says that no point of A - B is nearer; v0 is no point of A - B, so not at first.
     if (r->size > 0 && (squared - bound <= 2 * kUnit * squared || Repeated(*r, p))) return;
     r->simplex[r->size++] = p;
-    if (r->size == 4 && InsideTetrahedron(r->simplex)) {
+    Candidate inside;
+    if (r->size == 4 && InsideTetrahedron(r->simplex, &inside)) {
+      Reduce(inside, r);
       r->overlap = true;
       return;
     }

@@ -14,8 +14,7 @@ struct DifferencePoint {
 };
 
 /** What the iteration of Gilbert, Johnson and Keerthi [1988] proposes for the cores of two sets.
- Nothing here is certified: `v` becomes evidence through SeparationBound, the points through
- WitnessBound. */
+ Nothing here is certified: `v` becomes evidence through Gap, the points as members of both sets. */
 struct GjkResult {
   Eigen::Vector3d v = Eigen::Vector3d::UnitX();  ///< near-closest point of A - B to 0, from B to A
   Eigen::Vector3d a = Eigen::Vector3d::Zero();   ///< its points, relative to c_A and c_B

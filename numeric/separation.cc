@@ -38,35 +38,29 @@ Verdict DecideByDistance(const Convex& a, const Convex& b, double skin, const Ve
   const double error = a.error + b.error, radii = a.radius + b.radius;
   GjkResult gjk;
   Gjk(a, b, guess, std::max(0.0, radii + error - skin) + 4 * error, &gjk);
-  if (!gjk.overlap) {
-    const double length = gjk.v.norm();
-    const Vector3d n = gjk.v / length;
-    if (Certifies(a, b, n, error - skin)) {
-      Remember(a, n, hint);
-      ++counts->gjk;
-      return Verdict::kHolds;
-    }
-    // The witness points are in the cores; balls of radius r_A and r_B about them share a ball of
-    // radius (r_A + r_B - distance)/2 and must be moved apart by twice as much.
-    if (!gjk.separated && length + error < radii - skin) {
-      ++counts->meets;
-      return Verdict::kFails;
-    }
-    if (const auto direction = FclDirection(a, b);
-        direction && Certifies(a, b, *direction, error - skin)) {
-      Remember(a, *direction, hint);
-      ++counts->library;
-      return Verdict::kHolds;
-    }
+  const double length = gjk.v.norm();
+  if (!gjk.overlap && Certifies(a, b, gjk.v / length, error - skin)) {
+    Remember(a, gjk.v / length, hint);
+    ++counts->gjk;
+    return Verdict::kHolds;
   }
   if (skin > 0 && SeparatesByFace(a, b, error - skin, hint)) {
     ++counts->boxes;
     return Verdict::kHolds;
   }
-  if (ProveTetrahedron(gjk, error + skin) || ProveCommonPoint(a, b, skin) ||
+  // The witness points a, b are in the cores, so A - B holds the ball of radius r_A + r_B about
+  // a - b, and with it the ball of radius r_A + r_B - |a - b| about the origin.
+  const bool balls_meet = !gjk.separated && length + error < radii - skin;
+  if (balls_meet || ProveTetrahedron(gjk, error + skin) || ProveCommonPoint(a, b, skin) ||
       ProveOctahedron(a, b, error + skin)) {
     ++counts->meets;
     return Verdict::kFails;
+  }
+  const auto direction = FclDirection(a, b);
+  if (direction && Certifies(a, b, *direction, error - skin)) {
+    Remember(a, *direction, hint);
+    ++counts->library;
+    return Verdict::kHolds;
   }
   ++counts->undecided;
   return Verdict::kUndecided;
@@ -196,7 +190,7 @@ bool ProveOctahedron(const Convex& a, const Convex& b, double needed) {
 Verdict DecideConvex(const Convex& a, const Convex& b, double skin, SeparationHint* hint,
                      StageCounts* counts) {
   const double needed = a.error + b.error - skin;
-  if (HintSeparates(a, b, needed, *hint)) {
+  if (HintSeparates(a, b, a.error + b.error, skin, *hint)) {
     ++counts->cached;
     return Verdict::kHolds;
   }

@@ -47,14 +47,14 @@ Verdict DecideConvex(const Convex& a, const Convex& b, double skin, SeparationHi
 inline constexpr double kHintMargin = 1e-9;
 
 /** Whether the direction of the hint separates; the cheapest stage, inlined into the loops. */
-inline bool HintSeparates(const Convex& a, const Convex& b, double needed,
+inline bool HintSeparates(const Convex& a, const Convex& b, double error, double skin,
                           const SeparationHint& hint) {
   if (hint.code < 0) return false;
   const Eigen::Vector3d D = a.c - b.c;
   if (hint.code == 15) {
     const Eigen::Vector3d n = a.R * hint.direction;
     return n.dot(D) - CoreExtent(a, -n) - CoreExtent(b, n) - a.radius - b.radius >
-           needed + kHintMargin;
+           error - skin + kHintMargin;
   }
   Eigen::Vector3d n;
   double length = 1;
@@ -66,9 +66,10 @@ inline bool HintSeparates(const Convex& a, const Convex& b, double needed,
     n = a.R.col((hint.code - 6) / 3).cross(b.R.col((hint.code - 6) % 3));
     length = n.norm();
   }
-  // With |n| <= 1 + 8 u the error bounds hold as they stand; a shorter n makes them pessimistic.
-  return std::abs(n.dot(D)) - BoxExtent(a, n) - BoxExtent(b, n) - (a.radius + b.radius) * length >
-         needed + kHintMargin;
+  // Lengths scale with |n|. The errors would too; leaving them unscaled is pessimistic as |n| <= 1
+  // up to the defect of R, far below the margin.
+  return std::abs(n.dot(D)) - BoxExtent(a, n) - BoxExtent(b, n) >
+         (a.radius + b.radius - skin) * length + error + kHintMargin;
 }
 
 /** The axis of the separating axis test with the largest gap per unit length, of the boxes around

@@ -12,6 +12,8 @@ void ReportForce(const ScaledContacts& contacts, const Generator& generator, dou
                                      weight * contacts.v_scale};
 }
 
+}  // namespace
+
 void ReportBalance(const ScaledContacts& contacts, const Balance& balance, ForceWitness* witness) {
   witness->size = 0;
   for (int k = 0; k < 6; ++k) {
@@ -21,8 +23,6 @@ void ReportBalance(const ScaledContacts& contacts, const Balance& balance, Force
     ReportForce(contacts, balance.extra[k], balance.extra_weight[k], witness);
   }
 }
-
-}  // namespace
 
 StabilityWorkspace::StabilityWorkspace() : scratch(std::make_unique<Scratch>()) {}
 StabilityWorkspace::~StabilityWorkspace() = default;

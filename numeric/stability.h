@@ -3,10 +3,13 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "cguide/exact/core/path.h"
+#include "cguide/exact/equilibrium.h"
 #include "cguide/numeric/contact.h"
 
 namespace cguide::numeric {
@@ -78,6 +81,27 @@ class StabilityWorkspace {
  the errors allow are declined. Not finite, or without mass or gravity: declined. Allocates only
  while the workspace grows. */
 StabilityAnswer TryStability(const StabilityQuery& query, StabilityWorkspace* workspace);
+
+/** What settled a question of static stability. */
+enum class StabilityStage { kFast, kExact, kUndecided };
+
+struct SettledStability {
+  StabilityAnswer answer;
+  StabilityStage stage = StabilityStage::kUndecided;
+  std::string reason;  ///< one clause for the user where undecided, else empty
+  /** The exact twin's verdict on the stored contacts and its proof, where it was asked; its contact
+   indices are into the query. `answer` holds the same rounded to doubles. */
+  std::optional<exact::StabilityResult> exact;
+};
+
+/** TryStability, else exact::DecideStability on the stored contacts.
+
+ An exact verdict is about the stored numbers, which are not the real ones: it counts where they are
+ exact (no contact error, no CoM error, point sites), and otherwise only if its forces or its
+ separating wrench, rounded to doubles, pass the same certificates as TryStability's, which carry
+ the stated errors. Else the answer is kUndecided with the reason: a boundary, a rank below 6, or a
+ tie closer than the errors. The exact stage takes milliseconds. */
+SettledStability Stability(const StabilityQuery& query, StabilityWorkspace* workspace);
 
 /** Bound on |n_W - the real normal| of a contact; infinite where its errors allow any normal. */
 double NormalError(const Contact& contact);

@@ -59,6 +59,9 @@ struct Balance {
 /** Proves that the wrench is interior whatever the errors, refining base weights first. */
 bool ProveInterior(const ScaledContacts& contacts, Balance* balance);
 
+/** The balance in the query's terms. */
+void ReportBalance(const ScaledContacts& contacts, const Balance& balance, ForceWitness* witness);
+
 /** Proves that y separates v from the cones of all contacts whatever the errors. */
 bool ProveOutside(const ScaledContacts& contacts, const Vector6d& y);
 

@@ -105,6 +105,7 @@ ProjectionResult Project(const World& world, const Configuration& sample,
   result.q = sample;
   numeric::ClampToLimits(world.tree(), &result.q);
   std::size_t pushed = 0;
+  int colliding = 0;
   for (;; ++result.iterations) {
     numeric::Place(world, result.q, &ws->guide.geometry);
     const Membership membership = TestIterate(world, result.q, ws);
@@ -114,6 +115,8 @@ ProjectionResult Project(const World& world, const Configuration& sample,
     }
     result.stop = StopFor(membership);
     if (result.iterations == options.max_iterations) return result;
+    colliding = result.stop == ProjectionStop::kColliding ? colliding + 1 : 0;
+    if (colliding > options.max_colliding) return result;
     ++pushed;
     numeric::FindApproaches(
         world, {options.search_distance, options.sites_per_body, static_cast<int>(pushed)},

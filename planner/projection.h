@@ -11,6 +11,7 @@ namespace cguide::planner {
 
 struct ProjectionOptions {
   int max_iterations = 20;
+  int max_colliding = 3;  ///< consecutive iterates that are stable but not in C_free
   double search_distance = 0.6;  ///< obstacles farther than this from a site make no task (m)
   int sites_per_body = 4;        ///< tasks that one body may ask for
   /** A task of lowest priority draws the centre of mass towards the mean contact point. */
@@ -23,7 +24,7 @@ enum class ProjectionStop {
   kSolved,
   kNothingNear,  ///< no site within search_distance of an obstacle
   kUnstable,     ///< max_iterations reached, the last configuration was not stable
-  kColliding,    ///< max_iterations reached, the last configuration was stable but not in C_free
+  kColliding,    ///< stable but not in C_free, too often in a row or at the end
   kStalled       ///< the step vanished: limits or conflicting tasks
 };
 inline constexpr int kNumProjectionStops = 5;

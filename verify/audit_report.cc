@@ -149,7 +149,10 @@ std::string DescribeViolation(const Model& model, const Violation& v) {
       if (!sure) return DescribePair(model, v.pair) + " undecided: touching within rounding";
       return DescribePair(model, v.pair) + " overlap by about " + Millimetres(v.depth);
     case Obstruction::kUnstable: {
-      if (!sure) return "balance undecided: within rounding of its limit";
+      if (!sure) {
+        return "balance undecided: " +
+               (v.reason.empty() ? std::string("within rounding of its limit") : v.reason);
+      }
       std::string text = "balance lost, ";
       text += v.depth < 0 ? "no position of the centre of mass would be supported"
                           : "the centre of mass is " + Millimetres(v.depth) +

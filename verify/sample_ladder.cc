@@ -98,16 +98,22 @@ std::optional<PairFinding> SampleLadder::NearestPair(double cutoff) {
   return nearest;
 }
 
-numeric::StabilityAnswer SampleLadder::TestStability(StageCounts* counts) {
+numeric::SettledStability SampleLadder::TestStability(StageCounts* counts) {
   numeric::FindContacts(*world_, &workspace_.geometry, &workspace_.contacts);
-  const numeric::StabilityAnswer fast =
-      numeric::TryStability(numeric::PlacedQuery(*world_, workspace_), &workspace_.stability);
-  if (fast.verdict != Verdict::kUndecided) {
-    ++counts->fast;
-    return fast;
+  numeric::SettledStability settled =
+      numeric::Stability(numeric::PlacedQuery(*world_, workspace_), &workspace_.stability);
+  switch (settled.stage) {
+    case numeric::StabilityStage::kFast:
+      ++counts->fast;
+      break;
+    case numeric::StabilityStage::kExact:
+      ++counts->exact;
+      break;
+    case numeric::StabilityStage::kUndecided:
+      ++counts->undecided;
+      break;
   }
-  ++counts->undecided;
-  return fast;
+  return settled;
 }
 
 double SampleLadder::ComMargin() {

@@ -38,8 +38,9 @@ class SampleLadder {
   /** The pair with the smallest lower bound of its distance, if that is below cutoff. */
   std::optional<PairFinding> NearestPair(double cutoff);
 
-  /** Static stability; fills contacts(). */
-  numeric::StabilityAnswer TestStability(StageCounts* counts);
+  /** Static stability, by TryStability, else the exact twin on the stored contacts where that
+   carries the errors; fills contacts(). */
+  numeric::SettledStability TestStability(StageCounts* counts);
 
   /** Of the last TestStability: com_m (m, negative where unstable) and `force`, floats. */
   double ComMargin();

@@ -119,7 +119,8 @@ class EdgeAuditor {
 
   void AuditContacts(const Instant& at) {
     const bool only_contact = world_.model().require == GuideRequirement::kContact;
-    const numeric::StabilityAnswer stable = ladder_.TestStability(&result_.stability);
+    const numeric::SettledStability settled = ladder_.TestStability(&result_.stability);
+    const numeric::StabilityAnswer& stable = settled.answer;
     double gap = INFINITY;
     for (const numeric::Contact& contact : ladder_.contacts()) {
       gap = std::min(gap, contact.distance - contact.radius);
@@ -139,6 +140,7 @@ class EdgeAuditor {
     Violation& v = Report(at, Obstruction::kUnstable, stable.verdict);
     v.depth = std::isfinite(margin) ? std::max(0.0, -margin) : -1;
     v.separator = stable.separator;
+    v.reason = settled.reason;
   }
 
   const World& world_;

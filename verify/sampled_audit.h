@@ -48,6 +48,7 @@ struct Violation {
   double length = 0;   ///< of the samples' stretch, each counted with one step (metric of path.h)
   numeric::Pair pair;  ///< kCollision
   numeric::SeparatingWrench separator;  ///< kUnstable
+  std::string reason;                   ///< one clause where undecided; may be empty
 };
 
 struct SampledAuditOptions {

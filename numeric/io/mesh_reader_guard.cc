@@ -79,38 +79,58 @@ long ReadInteger(std::string_view word) {
 
 constexpr std::size_t kStlHeader = 84, kStlTriangle = 50;
 
-void GuardTextStl(const std::string& bytes, const std::string& place) {
-  std::size_t solids = 0, ends = 0, facets = 0, facet_ends = 0, vertices = 0;
+// Solids of facets of three vertices, one keyword a line; normals and names are not looked at.
+std::string ObjFromTextStl(const std::string& bytes, const std::string& place) {
+  static constexpr std::string_view kFacet[] = {"facet",  "outer",   "vertex",  "vertex",
+                                                "vertex", "endloop", "endfacet"};
+  std::string plain;
+  std::size_t vertices = 0;
+  std::size_t step = 0;  // within a facet
+  bool inside = false;   // a solid
   Lines lines(bytes);
   while (lines.Next()) {
     const auto words = lines.Words();
     if (words.empty()) continue;
-    if (words[0] == "solid") ++solids;
-    if (words[0] == "endsolid") ++ends;
-    if (words[0] == "facet") ++facets;
-    if (words[0] == "endfacet") ++facet_ends;
-    if (words[0] != "vertex") continue;
-    ++vertices;
-    CheckCoordinates(words.begin() + 1, words.end(), place, lines.number());
+    if (step == 0 && words[0] == (inside ? "endsolid" : "solid")) {
+      inside = !inside;
+      continue;
+    }
+    if (!inside || words[0] != kFacet[step]) {
+      RefuseLine(place, lines.number(),
+                 "text STL with \"" + std::string(words[0]) + "\" where \"" +
+                     std::string(inside ? kFacet[step] : "solid") + "\" should stand");
+    }
+    if (words[0] == "vertex") {
+      CheckCoordinates(words.begin() + 1, words.end(), place, lines.number());
+      plain += "v ";
+      AppendLine(words.begin() + 1, words.begin() + 4, &plain);
+      ++vertices;
+    }
+    step = (step + 1) % std::size(kFacet);
+    if (step != 0) continue;
+    for (std::size_t back : {2, 1, 0}) {
+      plain += (back == 2 ? "f " : " ") + std::to_string(vertices - back);
+    }
+    plain += '\n';
   }
-  if (solids == 0 || solids != ends || facets != facet_ends || vertices != 3 * facets) {
-    Refuse(place, "text STL with " + std::to_string(facets) + " facets, " +
-                      std::to_string(facet_ends) + " of them complete, and " +
-                      std::to_string(vertices) + " vertices: it is truncated or malformed");
+  if (inside) {
+    RefuseLine(place, lines.number(), "text STL without its last endsolid: it is truncated");
   }
+  if (vertices == 0) Refuse(place, "text STL without facets");
+  return plain;
 }
 
-void GuardStl(const std::string& bytes, const std::string& place) {
+GuardedMesh GuardStl(std::string bytes, const std::string& place) {
   std::uint64_t announced = 0;
   if (bytes.size() >= kStlHeader) {
     std::uint32_t count = 0;  // little-endian, as this machine must be
     std::memcpy(&count, bytes.data() + kStlHeader - sizeof(count), sizeof(count));
     announced = kStlHeader + kStlTriangle * std::uint64_t{count};
     // Binary files may begin with "solid" too; the size decides.
-    if (announced == bytes.size()) return;
+    if (announced == bytes.size()) return {std::move(bytes), "stl"};
   }
   if (bytes.starts_with("solid") && bytes.find('\0') == std::string::npos) {
-    return GuardTextStl(bytes, place);
+    return {ObjFromTextStl(bytes, place), "obj"};
   }
   Refuse(place, "no text STL, and as binary STL it must have " +
                     std::to_string(announced > 0 ? announced : kStlHeader) + " bytes, not " +
@@ -212,8 +232,7 @@ std::string PlainObj(const std::string& bytes, const std::string& place) {
 GuardedMesh GuardMesh(std::string bytes, MeshFormat format, const std::string& place) {
   switch (format) {
     case MeshFormat::kStl:
-      GuardStl(bytes, place);
-      return {std::move(bytes), "stl"};
+      return GuardStl(std::move(bytes), place);
     case MeshFormat::kOff:
       return {PlainOff(bytes, place), "off"};
     case MeshFormat::kObj:

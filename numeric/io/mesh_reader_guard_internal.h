@@ -12,10 +12,10 @@ struct GuardedMesh {
   const char* hint;  ///< the importer's name of the format
 };
 
-/** Checks what the importer does not: announced counts against the size of the file, completeness
- of text STL, index ranges of OBJ and OFF, well-formedness of DAE. Takes a DAE's unit away and what
- OBJ says beside vertices and faces.
- @throws Error (kBadInput) beginning with `place`. */
+/** Checks everything the importer leaves unchecked, so that it sees sound files only: the size of
+ binary STL, the grammar of text STL, numbers, counts and index ranges of OBJ, OFF and DAE. Takes
+ away what these say beside vertices and faces; text STL and DAE become OBJ.
+ @throws Error (kBadInput) beginning with `place`, with the line where there are lines. */
 GuardedMesh GuardMesh(std::string bytes, MeshFormat format, const std::string& place);
 
 /** The faces of a COLLADA file as OBJ: triangles, polylists and polygons of the visual scene, each

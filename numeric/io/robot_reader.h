@@ -46,13 +46,28 @@ struct RobotDescription {
   std::vector<std::string> warnings;
 };
 
-/** Reads a robot. Collision meshes become exact convex hulls, one shape per <collision>.
- rpy is fixed-axis and converted once to a quaternion in doubles.
- @throws Error (kBadInput, kIo) with file, line where known, cause and remedy. */
+/** Reads a robot: links, joints, inertials and collisions of the URDF, then the SRDF. Visuals are
+ not looked at. Collision meshes become exact convex hulls, one shape per <collision>.
+
+ Order: depth first from the root, the children of a link in the order of their joints in the file.
+ The doubles of the model: each decimal rounded to nearest once; rotations are FromRpy of the
+ doubles of rpy; axes as read; the factors of a mimic joint that follows another mimic joint are
+ multiplied out towards the independent one; meshes as ReadMesh says. urdfdom reads the same file
+ and must agree to the last bit (rotations: within 1e-14), else the file is refused as ambiguous.
+
+ Warnings, not errors: <capsule> (left out), files that urdfdom refuses, an SRDF of another robot's
+ name, what an SRDF says of unknown links and joints.
+ @throws Error (kBadInput, kIo) with file, line where known, cause and remedy: malformed XML,
+ numbers that are not finite or beyond 1e6, no mass, unknown joint types, floating and planar
+ joints, reversed limits, whatever is not one tree, missing meshes. */
 RobotDescription ReadRobot(const RobotFiles& files);
 
-/** Reads a static scene: one object per link, each collision a piece (meshes as mesh_reader's
- kAuto), joints at zero, all placed by X_WS. Friction is filled with `friction`. */
+/** Reads a static scene: one object per link with geometry, named after it, each collision a piece
+ (meshes as mesh_reader's kAuto, one piece per part), joints at zero, all placed by X_WS. Friction
+ is filled with `friction`. A Klampt world file (root element <world>) gives one object per terrain.
+ Poses are composed in doubles; those doubles are the model.
+ @throws Error (kBadInput, kIo) as ReadRobot, except that masses and joint types do not matter; a
+ scene without any geometry is refused. */
 std::vector<Object> ReadSceneUrdf(const std::filesystem::path& urdf, const PackageMap& packages,
                                   const Pose& X_WS, double friction,
                                   std::vector<std::string>* warnings);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cfenv>
 #include <ppl.hh>
 #include <random>
 #include <string>
@@ -15,6 +16,9 @@ namespace cguide::exact {
 namespace {
 
 namespace ppl = Parma_Polyhedra_Library;
+
+// Loading PPL turns the rounding mode upwards; its integer polyhedra do without, and we must.
+const bool kRoundingRestored = (ppl::restore_pre_PPL_rounding(), true);
 
 VectorXq Vec(const std::vector<std::string>& x) {
   VectorXq v(static_cast<Eigen::Index>(x.size()));
@@ -75,6 +79,11 @@ GeneratorCone RandomCone(std::mt19937& rng) {
 }
 
 }  // namespace
+
+TEST_CASE("The rounding mode is to nearest while these tests run") {
+  REQUIRE(kRoundingRestored);
+  CHECK(std::fegetround() == FE_TONEAREST);
+}
 
 TEST_CASE("The double description agrees with the Parma Polyhedra Library on random cones") {
   std::mt19937 rng(1953);

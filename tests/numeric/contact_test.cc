@@ -121,6 +121,46 @@ TEST_CASE("a floor gives the same contacts however it is cut") {
   CHECK(contacts > 60);
 }
 
+// The motion X_VW of the whole world.
+Pose Moved(const Pose& X_VW, const Pose& X_WP) {
+  const auto quaternion = [](const Quaternion& q) {
+    return Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
+  };
+  const Eigen::Quaterniond q = quaternion(X_VW.q) * quaternion(X_WP.q);
+  return {quaternion(X_VW.q) * X_WP.p + X_VW.p, {q.x(), q.y(), q.z(), q.w()}};
+}
+
+TEST_CASE("moving the whole world moves the contacts with it, cut floors included") {
+  std::mt19937_64 rng(6);
+  int contacts = 0;
+  for (int i = 0; i < 15; ++i) {
+    const Pose X_VW{RandomPoint(rng, i < 10 ? 2 : 50), RandomQuaternion(rng)};
+    const Configuration q =
+        At(i % 3 == 0 ? Vector3d(0.12, 0.07, 0.02)
+                      : Vector3d(Between(rng, -0.2, 0.2), Between(rng, -0.2, 0.2), 0.03));
+    for (const auto& [name, objects] : Floors()) {
+      if (name == "cracked") continue;
+      std::vector<Object> moved = objects;
+      for (Object& object : moved) {
+        for (Piece& piece : object.pieces) piece.X_WP = Moved(X_VW, piece.X_WP);
+      }
+      const Seen seen = Look(moved, At(Moved(X_VW, q.X_WB)));
+      CAPTURE(i, name);
+      CHECK(seen.verdict == Verdict::kHolds);
+      REQUIRE(seen.contacts.size() == 4);
+      const Vector3d up = Moved(X_VW, {{0, 0, 1}, {}}).p - X_VW.p;
+      for (const Contact& c : seen.contacts) {
+        ++contacts;
+        CHECK((c.n_W - up).norm() < 1e-5);
+        CHECK(c.distance == Approx(q.X_WB.p.z()).margin(1e-12));
+        CHECK(c.certain);
+        CHECK(c.error < 1e-5);
+      }
+    }
+  }
+  CHECK(contacts == 15 * 8 * 4);
+}
+
 TEST_CASE("a hairline crack below the seam adds and removes no contact") {
   std::mt19937_64 rng(4);
   const auto floors = Floors();

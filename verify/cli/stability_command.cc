@@ -65,6 +65,7 @@ Question ReadQuestion(const StabilityArguments& arguments) {
 
 struct Answer {
   numeric::StabilityAnswer stability;
+  std::string reason;  ///< where undecided
   verify::StageCounts stage;
   std::vector<numeric::Contact> contacts;
   double com_margin = 0;
@@ -79,7 +80,9 @@ Answer Ask(const Question& question) {
   verify::SampleLadder ladder(world, twins);
   ladder.Place(question.q);
   Answer answer;
-  answer.stability = ladder.TestStability(&answer.stage);
+  numeric::SettledStability settled = ladder.TestStability(&answer.stage);
+  answer.stability = settled.answer;
+  answer.reason = settled.reason;
   answer.contacts = ladder.contacts();
   answer.com_margin = ladder.ComMargin();
   answer.force_margin = ladder.ForceMargin();
@@ -100,7 +103,7 @@ std::string VerdictText(const Answer& answer) {
     case Verdict::kUndecided:
       break;
   }
-  return "undecided: on the boundary of the wrench cone, or nearer to it than can be told";
+  return "undecided: " + answer.reason;
 }
 
 std::string Vector(const Eigen::Vector3d& v) {

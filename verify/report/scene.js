@@ -128,7 +128,6 @@ export class SceneModel {
     this.sky = new THREE.HemisphereLight(0xffffff, 0xffffff, 0.62);
     this.sky.position.set(0, 0, 1);
     this.sun = new THREE.DirectionalLight(0xffffff, 0.62);
-    this.sun.position.copy(target).add(new THREE.Vector3(1.1, -1.5, 3.2).multiplyScalar(radius));
     this.sun.target.position.copy(target);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
@@ -143,6 +142,12 @@ export class SceneModel {
     // Goes with the camera, so that no side that is looked at lies in the dark.
     this.lamp = new THREE.DirectionalLight(0xffffff, 0.2);
     this.lamp.position.set(-0.4, 0.6, 1);
+  }
+
+  // The sun stands behind the shoulder of somebody in that corner.
+  lightFrom([x, y]) {
+    const {centre, radius} = this.survey;
+    this.sun.position.set(1.8 * x, 1.5 * y, 3.2).multiplyScalar(radius).add(new THREE.Vector3().fromArray(centre));
   }
 
   setTheme(theme) {

@@ -39,6 +39,7 @@ export class WebglView {
     this.overlay = new THREE.Scene();
     this.overlay.add(this.model.occluders, this.marks.overlay);
     this.rig.corner = this.clearestCorner(data);
+    this.model.lightFrom(this.rig.corner);
     if (this.model.grids.length > 0) addNotice(stage, 'Grid: 0.1 m, 1 m');
     this.onDrawn = () => {};
     this.resize();

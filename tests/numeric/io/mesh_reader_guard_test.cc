@@ -21,11 +21,28 @@ TEST_CASE("OBJ is brought to vertices and faces with absolute indices") {
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\nv 0 0 1\nf 4 1 2 3\n");
 }
 
-TEST_CASE("the name of a text STL may contain its key words") {
+TEST_CASE("text STL becomes vertices and faces, and its name may contain its key words") {
+  const std::string facet =
+      "facet normal nan 0 1\nouter loop\n vertex 0 0 0\n\tvertex 1 0 0\r\nvertex 0 1 0\nendloop\n"
+      "endfacet\n";
   const std::string text =
-      "solid facet vertex endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
-      "vertex 0 1 0\nendloop\nendfacet\nendsolid facet\n";
-  CHECK(GuardMesh(text, MeshFormat::kStl, "a.stl").bytes == text);
+      "solid facet vertex endsolid\n" + facet + "endsolid facet\nsolid\n" + facet + "endsolid";
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  CHECK(GuardMesh(text, MeshFormat::kStl, "a.stl").bytes ==
+        points + "f 1 2 3\n" + points + "f 4 5 6\n");
+}
+
+TEST_CASE("any line left out of a text STL makes it malformed") {
+  const std::vector<std::string> lines = {"solid",        "facet normal 0 0 1", "outer loop",
+                                          "vertex 0 0 0", "vertex 1 0 0",       "vertex 0 1 0",
+                                          "endloop",      "endfacet",           "endsolid"};
+  for (std::size_t missing = 0; missing <= lines.size(); ++missing) {
+    std::string text = "solid\nendsolid\n";  // what follows is the second solid
+    for (std::size_t i = 0; i < lines.size(); ++i) text += i == missing ? "" : lines[i] + "\n";
+    CAPTURE(text);
+    const auto refusal = RefusalOf([&] { GuardMesh(text, MeshFormat::kStl, "a.stl"); });
+    CHECK(refusal.has_value() == (missing < lines.size()));
+  }
 }
 
 }  // namespace

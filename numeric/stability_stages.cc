@@ -1,0 +1,180 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cguide/exact/equilibrium.h"
+#include "cguide/numeric/stability_contacts_internal.h"
+
+namespace cguide::numeric {
+namespace {
+
+// Point sites whose numbers carry no error: p = x, and w = x - y (or n where it is said to be
+// exact).
+bool IsExact(const Contact& contact) {
+  return contact.error == 0 && contact.radius == 0 && contact.normal_error <= 0;
+}
+
+bool IsExact(const StabilityQuery& query) {
+  return query.com_error == 0 &&
+         std::all_of(query.contacts.begin(), query.contacts.end(),
+                     [](const Contact& contact) { return IsExact(contact); });
+}
+
+exact::ExactContact LiftContact(const Contact& contact) {
+  exact::ExactContact lifted;
+  lifted.p = Lift(contact.force_point_W());
+  lifted.cone.mu = Lift(contact.friction);
+  lifted.cone.w = Lift(contact.n_W);
+  if (IsExact(contact) && contact.normal_error < 0 && contact.distance != 0) {
+    const Vector3q x = Lift(contact.x_W), y = Lift(contact.y_W);
+    for (int i = 0; i < 3; ++i) {
+      lifted.cone.w[i] = contact.distance > 0 ? Rational(x[i] - y[i]) : Rational(y[i] - x[i]);
+    }
+  }
+  return lifted;
+}
+
+// The first `count` scaled contacts, so that indices agree.
+exact::EquilibriumQuery LiftQuery(const StabilityQuery& query, const ScaledContacts& scaled,
+                                  int count) {
+  exact::EquilibriumQuery lifted;
+  for (int i = 0; i < count; ++i) {
+    lifted.contacts.push_back(LiftContact(query.contacts[scaled.index[i]]));
+  }
+  lifted.com = Lift(query.com_W);
+  lifted.mass = Lift(query.mass);
+  lifted.gravity = Lift(query.gravity_W);
+  return lifted;
+}
+
+Generator ToGenerator(const ScaledContacts& scaled, int contact, const Eigen::Vector3d& u) {
+  Generator generator;
+  generator.contact = contact;
+  generator.u = u;
+  const Eigen::Vector3d r = scaled.arm(contact);
+  generator.wrench << u, r[1] * u[2] - r[2] * u[1], r[2] * u[0] - r[0] * u[2],
+      r[0] * u[1] - r[1] * u[0];
+  return generator;
+}
+
+// Six of the forces as a base, by elimination with the largest pivots, the rest as extra columns.
+bool ToBalance(const ScaledContacts& scaled, const std::vector<exact::ContactForce>& forces,
+               Balance* balance) {
+  std::vector<std::pair<Generator, double>> columns;
+  for (const exact::ContactForce& force : forces) {
+    const Eigen::Vector3d f(NearestDouble(force.f[0]), NearestDouble(force.f[1]),
+                            NearestDouble(force.f[2]));
+    const double along = f.dot(scaled.normal(force.contact));
+    if (!(along > 0)) continue;
+    columns.emplace_back(ToGenerator(scaled, force.contact, f / along), along / scaled.v_scale);
+  }
+  if (columns.size() < 6 || columns.size() > 12) return false;
+  Matrix6d& inverse = balance->base_inverse;
+  inverse.setIdentity();
+  for (int row = 0; row < 6; ++row) {
+    const auto pivot = [&](const auto& column) {
+      return std::abs(inverse.row(row).dot(column.first.wrench));
+    };
+    const auto best = std::max_element(columns.begin(), columns.end(),
+                                       [&](auto& a, auto& b) { return pivot(a) < pivot(b); });
+    if (!(pivot(*best) > 0)) return false;
+    const Vector6d alpha = inverse * best->first.wrench;
+    const Eigen::Matrix<double, 1, 6> pivot_row = inverse.row(row) / alpha[row];
+    for (int k = 0; k < 6; ++k) {
+      if (k != row) inverse.row(k) -= alpha[k] * pivot_row;
+    }
+    inverse.row(row) = pivot_row;
+    balance->base[row] = best->first;
+    balance->weight[row] = best->second;
+    columns.erase(best);
+  }
+  balance->num_extra = 0;
+  for (const auto& [generator, weight] : columns) {
+    balance->extra[balance->num_extra] = generator;
+    balance->extra_weight[balance->num_extra++] = weight;
+  }
+  return true;
+}
+
+// y in the metres of the query, scaled to a largest entry near 1, which is exact up to rounding to
+// double.
+Vector6d ToDoubles(const Vector6q& y) {
+  Rational largest = 0;
+  for (const Rational& x : y) largest = std::max(largest, Rational(abs(x)));
+  Vector6d rounded;
+  for (int i = 0; i < 6; ++i) rounded[i] = NearestDouble(Rational(y[i] / largest));
+  return rounded;
+}
+
+void Decline(std::string reason, SettledStability* settled) {
+  settled->answer = StabilityAnswer{};
+  settled->stage = StabilityStage::kUndecided;
+  settled->reason = std::move(reason);
+}
+
+// The exact verdict holds or fails: does it survive the errors?
+void Settle(const StabilityQuery& query, const exact::StabilityResult& result,
+            StabilityWorkspace* workspace, SettledStability* settled) {
+  const ScaledContacts& scaled = workspace->scratch->contacts;
+  Balance& balance = workspace->scratch->balance;
+  settled->stage = StabilityStage::kExact;
+  settled->answer.verdict = result.verdict;
+  const bool holds = result.verdict == Verdict::kHolds;
+  bool survives = IsExact(query);
+  if (holds && ToBalance(scaled, result.forces, &balance)) {
+    survives |= ProveInterior(scaled, &balance);
+    ReportBalance(scaled, balance, &settled->answer.forces);
+  }
+  if (!holds) {
+    Vector6d y = ToDoubles(result.separator);
+    settled->answer.separator.y = y;
+    y.tail<3>() *= scaled.length;
+    survives |= ProveOutside(scaled, y);
+  }
+  if (!survives) {
+    Decline(std::string(holds ? "stable" : "unstable") +
+                " as stored, but by less than the error of the contacts",
+            settled);
+  }
+}
+
+void DecideExactly(const StabilityQuery& query, StabilityWorkspace* workspace,
+                   SettledStability* settled) {
+  const ScaledContacts& scaled = workspace->scratch->contacts;
+  exact::StabilityResult result =
+      exact::DecideStability(LiftQuery(query, scaled, scaled.num_certain));
+  const bool depends = scaled.num_certain < scaled.count && result.verdict != Verdict::kHolds;
+  // Where the certain contacts do not carry the robot, only a refutation with all of them counts.
+  if (depends) result = exact::DecideStability(LiftQuery(query, scaled, scaled.count));
+  if (depends && result.verdict != Verdict::kFails) {
+    Decline("depends on contacts that may or may not be active", settled);
+  } else if (result.verdict == Verdict::kUndecided) {
+    Decline(exact::Describe(result), settled);
+  } else {
+    Settle(query, result, workspace, settled);
+  }
+  for (exact::ContactForce& force : result.forces) force.contact = scaled.index[force.contact];
+  settled->exact = std::move(result);
+}
+
+}  // namespace
+
+SettledStability Stability(const StabilityQuery& query, StabilityWorkspace* workspace) {
+  SettledStability settled;
+  settled.answer = TryStability(query, workspace);
+  settled.stage = StabilityStage::kFast;
+  if (settled.answer.verdict != Verdict::kUndecided) return settled;
+  if (!ScaleContacts(query, &workspace->scratch->contacts)) {
+    Decline("a number is not finite, or mass or gravity is zero", &settled);
+    return settled;
+  }
+  for (const Contact& contact : query.contacts) {
+    if (!contact.n_W.isZero(0)) continue;
+    Decline("a contact has no normal", &settled);
+    return settled;
+  }
+  DecideExactly(query, workspace, &settled);
+  return settled;
+}
+
+}  // namespace cguide::numeric

@@ -1,0 +1,182 @@
+#!/usr/bin/env bash
+# The program from outside: exit codes, messages, what is written and what is not.
+# usage: cli_test.sh PROGRAM FIXTURES SECTION
+set -uo pipefail
+program=$1
+fixtures=$2
+section=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+
+fail() {
+  echo "FAILED: $*" >&2
+  failures=$((failures + 1))
+}
+
+# expect CODE ARGUMENTS...: runs the program; its stdout and stderr are kept in $work/out and $work/err.
+expect() {
+  local wanted=$1 code=0
+  shift
+  "$program" "$@" >"$work/out" 2>"$work/err" || code=$?
+  [ "$code" = "$wanted" ] || {
+    fail "exit code $code instead of $wanted: cguide $*"
+    sed 's/^/    /' "$work/err" | head -5 >&2
+  }
+}
+
+says() { grep -qF -- "$1" "$work/out" "$work/err" || fail "nothing said of \"$1\""; }
+says_not() { ! grep -qiF -- "$1" "$work/out" "$work/err" || fail "said \"$1\""; }
+
+a1=$fixtures/problems/chair_and_table.yaml
+room=$fixtures/problems/floor.yaml
+
+section_usage() {
+  expect 0 --help
+  says plan
+  expect 0 --version
+  says "cguide 0."
+  expect 2
+  expect 2 dance
+  expect 2 plan "$a1"                      # no output named
+  expect 2 plan "$a1" -o "$work/g.json" --planner magic
+  expect 2 plan "$a1" -o "$work/g.json" --seed x
+  expect 2 plan "$a1" -o "$work/g.json" --time-limit -1
+  expect 2 audit "$work/g.json" --dense 0
+  expect 2 stability
+  [ ! -e "$work/g.json" ] || fail "a usage error wrote a file"
+}
+
+section_main_job() {
+  expect 0 plan "$a1" -o "$work/guide.json" --seed 3 --stats "$work/stats.json"
+  says "edges: sampled("
+  says_not proved
+  grep -q '"edges": *"sampled(' "$work/guide.json" || fail "the guide does not say how its edges were tested"
+  ! grep -qi proved "$work/guide.json" || fail "the guide speaks of proof"
+  ! grep -q seconds "$work/guide.json" || fail "the guide holds times"
+  grep -q search_seconds "$work/stats.json" || fail "the statistics hold no times"
+  # At the planner's own samples its edges hold; a finer audit may find more and says so by its code.
+  expect 0 audit "$work/guide.json" --dense 0.02
+  says "no violation at the samples"
+  says "com margin"
+  says_not proved
+  expect 0 audit "$work/guide.json" --dense 0.02 --format json -o "$work/report.json"
+  grep -q '"schema": "cguide-audit/1"' "$work/report.json" || fail "the report has no schema"
+  expect 0 stability --guide "$work/guide.json" --at 0.5
+  says "statically stable"
+  says "support region"
+  expect 0 stability "$a1" --posture goal --format json
+  says '"verdict": "stable"'
+  expect 1 stability "$a1" --posture one_leg_up_left
+  says "separating wrench"
+  expect 0 view "$work/guide.json" -o "$work/page.html"
+  grep -q '<html' "$work/page.html" || fail "the page is no page"
+  expect 0 model "$a1" -o "$work/model.json"
+  says "sha256:"
+  expect 0 doctor "$a1"
+  says "directed rounding works"
+  expect 0 doctor
+}
+
+section_reproducible() {
+  expect 0 plan "$a1" -o "$work/one.json" --seed 7 --threads 1
+  expect 0 plan "$a1" -o "$work/two.json" --seed 7 --threads 2
+  cmp -s "$work/one.json" "$work/two.json" || fail "another number of threads gave another guide"
+  expect 0 plan "$a1" -o "$work/again.json" --seed 7 --threads 2
+  cmp -s "$work/two.json" "$work/again.json" || fail "the same call gave another guide"
+  expect 0 plan "$room" -o "$work/prm1.json" --planner prm --seed 7 --threads 1
+  expect 0 plan "$room" -o "$work/prm2.json" --planner prm --seed 7 --threads 2
+  cmp -s "$work/prm1.json" "$work/prm2.json" || fail "another number of threads gave another roadmap guide"
+  for threads in 1 2; do
+    "$program" audit "$work/one.json" --dense 0.005 --threads "$threads" --format json \
+      >"$work/report$threads.json" 2>/dev/null
+  done
+  cmp -s "$work/report1.json" "$work/report2.json" || fail "another number of threads gave another report"
+}
+
+section_limits() {
+  expect 4 plan "$fixtures/problems/tunnel_80.yaml" -o "$work/none.json" --iteration-limit 4
+  says "no guide found: iteration limit"
+  [ ! -e "$work/none.json" ] || fail "a guide was written though none was found"
+  expect 4 plan "$fixtures/problems/tunnel_80.yaml" -o "$work/none.json" --time-limit 0.3
+  says "time limit"
+  # Ctrl-C: a shell starts background jobs with SIGINT ignored, so SIGTERM stands for it.
+  "$program" plan "$fixtures/problems/tunnel_80.yaml" -o "$work/none.json" --time-limit 60 \
+    >/dev/null 2>&1 &
+  local pid=$!
+  sleep 2
+  kill -TERM "$pid"
+  local code=0
+  wait "$pid" || code=$?
+  [ "$code" = 130 ] || fail "interrupted, but exit code $code"
+  [ ! -e "$work/none.json" ] || fail "an interrupted plan left a guide"
+  ls "$work" | grep -q '\.tmp\|~' && fail "temporary files are left"
+}
+
+section_foreign_path() {
+  expect 0 plan "$room" -o "$work/guide.json"
+  # The waypoints of a guide, as another program would list them.
+  node -e '
+    const guide = JSON.parse(require("fs").readFileSync(process.argv[1], "utf8"));
+    console.log(["x","y","z","qx","qy","qz","qw"].concat(guide.joint_names).join(","));
+    for (const w of guide.waypoints)
+      console.log(["x","y","z","qx","qy","qz","qw"].map(k => w.root[k]).concat(w.joints).join(","));
+  ' "$work/guide.json" >"$work/path.csv"
+  expect 0 audit "$work/path.csv" --problem "$room" --dense 0.02
+  expect 3 audit "$work/path.csv" --dense 0.02
+  says "--problem"
+  # The same path half a metre up: no contact and no balance at any sample.
+  awk -F, -v OFS=, 'NR > 1 { $3 += 0.5 } { print }' "$work/path.csv" >"$work/up.csv"
+  expect 1 audit "$work/up.csv" --problem "$room" --dense 0.02
+  says "balance lost"
+  # And 3 cm down: the feet are in the floor.
+  awk -F, -v OFS=, 'NR > 1 { $3 -= 0.03 } { print }' "$work/path.csv" >"$work/down.csv"
+  expect 1 audit "$work/down.csv" --problem "$room" --dense 0.02
+  says "overlap by about"
+  says "floor"
+}
+
+section_bad_input() {
+  expect 3 plan "$work/absent.yaml" -o "$work/out.json"
+  says absent.yaml
+  expect 3 plan "$a1" -o "$work/no/such/folder/out.json"
+  says "create the folder"
+  expect 3 audit "$work/absent.json" --dense 0.1
+  expect 3 view "$work/absent.json" -o "$work/page.html"
+  local file count=0
+  for file in "$fixtures"/bad/problems/*; do
+    [ -f "$file" ] || continue
+    rm -f "$work/out.json"
+    expect 3 plan "$file" -o "$work/out.json" --time-limit 20
+    says "$(basename "$file")"
+    [ ! -e "$work/out.json" ] || fail "$file: an output was written"
+    count=$((count + 1))
+  done
+  for file in "$fixtures"/bad/guides/*; do
+    [ -f "$file" ] || continue
+    expect 3 audit "$file" --problem "$a1" --dense 0.1
+    says "$(basename "$file")"
+    count=$((count + 1))
+  done
+  for file in "$fixtures"/bad/paths/*.csv; do
+    [ -f "$file" ] || continue
+    expect 3 audit "$file" --problem "$a1" --dense 0.1
+    says "$(basename "$file")"
+    count=$((count + 1))
+  done
+  [ "$count" -ge 40 ] || fail "only $count bad files were tried"
+  # A start deep inside the floor is bad input, and the message says what overlaps.
+  sed -e 's/xyz_m: \[0, 0, 0.412\]/xyz_m: [0, 0, 0.2]/' -e "s|\.\./robots|$fixtures/robots|g" "$a1" \
+    >"$work/deep.yaml"
+  expect 3 plan "$work/deep.yaml" -o "$work/out.json"
+  says start
+  says overlap
+  [ ! -e "$work/out.json" ] || fail "an output was written"
+}
+
+"section_$section"
+if [ "$failures" -gt 0 ]; then
+  echo "$failures failures in $section" >&2
+  exit 1
+fi
+echo "$section: as expected"
