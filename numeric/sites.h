@@ -16,8 +16,8 @@ struct SiteOptions {
  site or the shape has 24. Ties by index; depends on the shapes alone. */
 std::vector<Site> DefaultSites(const Robot& robot, int link, const SiteOptions& options);
 
-/** Distance of a point fixed on the link from the union of its shapes, 0 inside (m, plain floats).
- */
+/** Distance of a point fixed on the link from the union of its shapes, 0 inside; infinite
+ without shapes (m, plain floats). A hull without faces counts as its vertices alone. */
 double DistanceToLink(const Robot& robot, int link, const Eigen::Vector3d& x_L);
 
 }  // namespace cguide::numeric
