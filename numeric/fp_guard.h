@@ -9,6 +9,22 @@
     "cguide's error bounds do not hold under -ffast-math or -ffinite-math-only; remove the option"
 #endif
 
+#include <cfenv>
 #include <cfloat>
 
+#include "cguide/exact/core/error.h"
+
 static_assert(FLT_EVAL_METHOD == 0, "cguide needs doubles that are evaluated as doubles (no x87)");
+
+namespace cguide::numeric {
+
+/** Refuses to go on in a thread whose rounding mode is not to nearest: some libraries change it
+ when they are loaded (PPL does), and every bound would be false. Costs a few nanoseconds.
+ @throws Error (kInvalidArgument). */
+inline void RequireRoundToNearest() {
+  Require(std::fegetround() == FE_TONEAREST,
+          "double arithmetic of this thread does not round to nearest; a library has changed the "
+          "mode: call std::fesetround(FE_TONEAREST) first");
+}
+
+}  // namespace cguide::numeric

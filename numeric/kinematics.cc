@@ -224,6 +224,7 @@ void KinematicTree::SetReach() {
 
 void ForwardKinematics(const KinematicTree& tree, const Configuration& q, KinematicState* state) {
   Require(q.joints.size() == tree.num_columns, "the configuration has another number of joints");
+  RequireRoundToNearest();
   const std::size_t n = tree.bodies.size();
   state->X_WB.resize(n);
   state->axis_W.resize(n);

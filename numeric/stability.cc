@@ -1,5 +1,6 @@
 #include "cguide/numeric/stability.h"
 
+#include "cguide/numeric/fp_guard.h"
 #include "cguide/numeric/stability_contacts_internal.h"
 
 namespace cguide::numeric {
@@ -30,6 +31,7 @@ StabilityWorkspace::StabilityWorkspace(StabilityWorkspace&&) noexcept = default;
 StabilityWorkspace& StabilityWorkspace::operator=(StabilityWorkspace&&) noexcept = default;
 
 StabilityAnswer TryStability(const StabilityQuery& query, StabilityWorkspace* workspace) {
+  RequireRoundToNearest();
   StabilityAnswer answer;
   ScaledContacts& contacts = workspace->scratch->contacts;
   Balance& balance = workspace->scratch->balance;

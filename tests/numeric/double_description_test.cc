@@ -13,6 +13,9 @@
 namespace cguide::numeric {
 namespace {
 
+// Loading PPL turns the rounding mode upwards, where no bound of ours holds and none is computed.
+const bool kRoundingRestored = (Parma_Polyhedra_Library::restore_pre_PPL_rounding(), true);
+
 using testing::PointContact;
 using testing::RandomStance;
 using testing::Stance;

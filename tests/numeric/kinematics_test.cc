@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
+#include <cfenv>
 #include <cmath>
 #include <random>
 
@@ -198,6 +199,26 @@ TEST_CASE("a configuration with another number of joints is refused") {
   q.joints.conservativeResize(q.joints.size() + 1);
   KinematicState state;
   CHECK_THROWS_AS(ForwardKinematics(tree, q, &state), Error);
+}
+
+TEST_CASE("a thread that does not round to nearest is refused, as no bound would hold") {
+  std::mt19937_64 rng(12);
+  const Robot robot = RandomRobot(rng, 6);
+  const KinematicTree tree(robot);
+  const Configuration q = RandomConfiguration(rng, robot);
+  KinematicState state;
+  for (int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+    std::fesetround(mode);
+    bool refused = false;
+    try {
+      ForwardKinematics(tree, q, &state);
+    } catch (const Error&) {
+      refused = true;
+    }
+    std::fesetround(FE_TONEAREST);
+    CHECK(refused);
+  }
+  CHECK_NOTHROW(ForwardKinematics(tree, q, &state));
 }
 
 }  // namespace
