@@ -90,6 +90,15 @@ DirectedClearance Overlapping(const Convex& a, const Convex& b, const GjkResult&
   return result;
 }
 
+// A lower bound of the distance from the boxes around the cores alone, without looking at points.
+double BoxBound(const Convex& a, const Convex& b) {
+  SeparationHint hint;
+  hint.code = static_cast<signed char>(BestBoxAxis(a, b).code);
+  const Vector3d n = HintDirection(a, b, hint);
+  return n.dot(a.c - b.c) - BoxExtent(a, n) - BoxExtent(b, n) - a.radius - b.radius - a.error -
+         b.error;
+}
+
 void Absorb(const DirectedClearance& one, DirectedClearance* all) {
   if (all->overlap && (!one.overlap || one.depth <= all->depth)) return;
   const double lo = std::min(all->lo, one.lo);
@@ -113,6 +122,10 @@ DirectedClearance ConvexClearance(const Convex& a, const Convex& b, double cutof
   result.lo = D.norm() * (1 - 4 * kUnit) - a.reach - b.reach - error;
   result.hi = INFINITY;
   if (result.lo >= cutoff) return result;
+  if (std::isfinite(cutoff)) {
+    result.lo = std::max(result.lo, BoxBound(a, b));
+    if (result.lo >= cutoff) return result;
+  }
   result.lo = 0;
   GjkResult gjk;
   Gjk(a, b, D, INFINITY, &gjk);

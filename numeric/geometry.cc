@@ -267,7 +267,7 @@ void AddSites(const Model& model, const std::vector<ExactPose>& X_BL, Geometry* 
 
 }  // namespace
 
-Geometry::Geometry(const Model& model, const KinematicTree&) {
+Geometry::Geometry(const Model& model) {
   num_bodies = static_cast<int>(model.robot.bodies.size());
   num_objects = static_cast<int>(model.objects.size());
   const std::vector<ExactPose> X_BL = LinkPoses(model.robot);

@@ -58,7 +58,7 @@ struct BodySites {
 /** Everything a query needs and that does not depend on the configuration. */
 class Geometry {
  public:
-  Geometry(const Model& model, const KinematicTree& tree);
+  explicit Geometry(const Model& model);
 
   int num_bodies = 0;
   int num_objects = 0;

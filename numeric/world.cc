@@ -23,7 +23,7 @@ void PlaceShape(const BodyShape& shape, const KinematicState& state, Convex* pla
 World::World(Model model)
     : model_(Checked(std::move(model))),
       tree_(model_.robot),
-      geometry_(std::make_unique<Geometry>(model_, tree_)) {}
+      geometry_(std::make_unique<Geometry>(model_)) {}
 
 World::~World() = default;
 

@@ -78,10 +78,13 @@ Clearance PairClearance(const World& world, const Pair& pair, double cutoff, Wor
 /** Every pair that C_free asks about: all body-object pairs, then Model::self_pairs. */
 std::vector<Pair> AllPairs(const World& world);
 
-/** Collision half of C_free: kHolds where every pair is separated by more than its error bound
- (penetration provably below the skin for may_touch pairs), kFails where one pair provably meets,
- else kUndecided. Limits are WithinLimits' business. `first` is the first pair that did not hold.
- Fast: stops at the first pair that fails. */
+/** Collision half of C_free: kHolds where every pair is separated by more than its error bound,
+ kFails where one pair provably meets, else kUndecided. For may_touch pairs the skin replaces zero:
+ two convex pieces hold where a translation shorter than the skin provably separates them, and fail
+ where none does; a body and an object are judged piece by piece. Limits are WithinLimits' business.
+ `first` is the first pair of AllPairs that fails, else the first undecided one; the test stops at
+ the first that fails. Depends on model and configuration alone, not on what the workspace saw
+ before. */
 struct FreeAnswer {
   Verdict verdict = Verdict::kHolds;
   Pair first;
@@ -89,7 +92,11 @@ struct FreeAnswer {
 FreeAnswer TestFree(const World& world, Workspace* workspace);
 
 /** Contacts of the placed configuration, certain ones and possible ones, ordered by site then
- object. Honours Model::contact (sites or nearest, bodies, epsilon, skin, seam). */
+ object. Honours Model::contact (sites or nearest, bodies, epsilon, skin, seam). Local closest
+ points that rounding cannot tell apart are one contact, whose `error` covers their spread; where
+ their owners differ in friction it has the smallest, and an uncertain twin with the largest follows
+ (a refutation must allow for it). Under ContactModel::kNearest x and y are one of possibly many
+ closest pairs. */
 void FindContacts(const World& world, Workspace* workspace, std::vector<Contact>* contacts);
 
 /** For the projection: per body, the local closest point nearest to it. */
