@@ -1,5 +1,6 @@
 #include "cguide/numeric/io/robot_reader.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "cguide/exact/core/error.h"
