@@ -6,10 +6,17 @@
 
 namespace cguide::planner {
 
+/** Least motion rather than best balance: no pull on the centre of mass. */
+inline ProjectionOptions EndpointProjection() {
+  ProjectionOptions options;
+  options.com_gain = 0;
+  return options;
+}
+
 struct EndpointOptions {
   double max_translation = 0.05;  ///< how far a projection may move the root (m)
   double max_joint = 0.2;         ///< and each joint or the root's orientation (rad, m)
-  ProjectionOptions projection;
+  ProjectionOptions projection = EndpointProjection();
 };
 
 /** A start or goal that lies in the space, moved there if it lay a little outside. */

@@ -67,7 +67,7 @@ section_main_job() {
   says "support region"
   expect 0 stability "$a1" --posture goal --format json
   says '"verdict": "stable"'
-  expect 1 stability "$a1" --posture one_leg_up_left
+  expect 1 stability "$room" --posture sitting
   says "separating wrench"
   expect 0 view "$work/guide.json" -o "$work/page.html"
   grep -q '<html' "$work/page.html" || fail "the page is no page"

@@ -32,7 +32,7 @@ SampledAudit Audit(const Room& room, const Path& path, double step, int threads 
 TEST_CASE("a guide that stays on the floor has no violation, and its worst values are found") {
   const Room room("floor");
   const SampledAudit audit =
-      Audit(room, PathOf(room, {room.problem.start, Raised(room.problem.start, 0.01)}), 0.001);
+      Audit(room, PathOf(room, {room.problem.start, Raised(room.problem.start, 0.01)}), 0.0011);
   CHECK(audit.verdict == Verdict::kHolds);
   CHECK(audit.violations.empty());
   CHECK(audit.samples == 11);
@@ -71,7 +71,8 @@ TEST_CASE("a dip into the floor is measured: bodies, depth, stretch") {
   for (const Violation& v : audit.violations) {
     if (v.kind != Obstruction::kCollision) continue;
     ++floor_violations;
-    CHECK(v.depth == Approx(0.03 - gap).margin(1e-6));
+    // The turning point is the last sample of edge 0; edge 1 begins one step after it.
+    CHECK(v.depth == Approx(0.03 - gap).margin(v.edge == 0 ? 1e-6 : 0.00101));
     CHECK(v.length == Approx(0.03 - gap).margin(0.002));
     CHECK(room.problem.model.objects[v.pair.other].name == "floor");
     CHECK(v.s_worst == (v.edge == 0 ? Approx(1) : Approx(1.0 / 30).margin(0.01)));
