@@ -6,7 +6,7 @@
 namespace cguide::numeric {
 
 struct SampledEdgeOptions {
-  double step = 0.02;  ///< largest Distance() between neighbouring samples (metric of path.h)
+  double step = 0.005;  ///< largest Distance() between neighbouring samples (metric of path.h)
   Space space = Space::kGuide;
 };
 

@@ -29,7 +29,7 @@ struct Arguments {
   int threads = 1;
   bool parts = false;
   bool verbose = false;
-  double edge_step = 0.02;
+  double edge_step = 0.005;
   std::vector<std::string> problems;
 };
 

@@ -56,11 +56,11 @@ section_main_job() {
   ! grep -q seconds "$work/guide.json" || fail "the guide holds times"
   grep -q search_seconds "$work/stats.json" || fail "the statistics hold no times"
   # At the planner's own samples its edges hold; a finer audit may find more and says so by its code.
-  expect 0 audit "$work/guide.json" --dense 0.02
+  expect 0 audit "$work/guide.json" --dense 0.005
   says "no violation at the samples"
   says "com margin"
   says_not proved
-  expect 0 audit "$work/guide.json" --dense 0.02 --format json -o "$work/report.json"
+  expect 0 audit "$work/guide.json" --dense 0.005 --format json -o "$work/report.json"
   grep -q '"schema": "cguide-audit/1"' "$work/report.json" || fail "the report has no schema"
   expect 0 stability --guide "$work/guide.json" --at 0.5
   says "statically stable"
@@ -122,16 +122,16 @@ section_foreign_path() {
     for (const w of guide.waypoints)
       console.log(["x","y","z","qx","qy","qz","qw"].map(k => w.root[k]).concat(w.joints).join(","));
   ' "$work/guide.json" >"$work/path.csv"
-  expect 0 audit "$work/path.csv" --problem "$room" --dense 0.02
-  expect 3 audit "$work/path.csv" --dense 0.02
+  expect 0 audit "$work/path.csv" --problem "$room" --dense 0.005
+  expect 3 audit "$work/path.csv" --dense 0.005
   says "--problem"
   # The same path half a metre up: no contact and no balance at any sample.
   awk -F, -v OFS=, 'NR > 1 { $3 += 0.5 } { print }' "$work/path.csv" >"$work/up.csv"
-  expect 1 audit "$work/up.csv" --problem "$room" --dense 0.02
+  expect 1 audit "$work/up.csv" --problem "$room" --dense 0.005
   says "balance lost"
   # And 3 cm down: the feet are in the floor.
   awk -F, -v OFS=, 'NR > 1 { $3 -= 0.03 } { print }' "$work/path.csv" >"$work/down.csv"
-  expect 1 audit "$work/down.csv" --problem "$room" --dense 0.02
+  expect 1 audit "$work/down.csv" --problem "$room" --dense 0.005
   says "overlap by about"
   says "floor"
 }

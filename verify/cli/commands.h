@@ -31,7 +31,7 @@ struct PlanArguments {
   std::uint64_t seed = 1;
   double time_limit_s = 300;
   long iteration_limit = 10'000'000;
-  double edge_step = 0.02;
+  double edge_step = 0.005;
   double extension = 0;  ///< 0: the planner's default
   int shortcut_rounds = 120;
   std::string stats;  ///< file for times and counters, or empty
