@@ -25,14 +25,12 @@ double Orthogonalise(const std::vector<VectorXd>& basis, std::size_t size, Vecto
   return before;
 }
 
-// Solves in the scaled variables x = v / weight; frozen columns keep the value they have in `step`.
+// Solves in the scaled variables x = v / weight; frozen columns stay 0.
 void SolveOnce(std::span<const Task> tasks, double damping, TaskStackWorkspace* ws,
                VectorXd* step) {
   std::size_t used = 0;
   const Eigen::Index n = step->size();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    if (!ws->frozen[j]) (*step)[j] = 0;
-  }
+  step->setZero();
   for (const Task& task : tasks) {
     const double missing = task.rate - task.row.dot(*step);
     ws->row = task.row.cwiseProduct(ws->weight);
@@ -60,22 +58,17 @@ double ClampScale(const TaskStackOptions& options, const VectorXd& step) {
   return scale;
 }
 
-// Freezes the columns that the scaled step carries out of their limits, at the value that reaches
-// the limit. A step that will be shortened anyway leaves its columns free as long as it can.
-bool FreezeColumns(const KinematicTree& tree, const Configuration& q, double scale,
-                   TaskStackWorkspace* ws, VectorXd* step) {
+// Freezes the columns that the whole step would carry out of their limits where they are: the
+// others take over. (Letting them run up to the limit first projected a sixth fewer samples in the
+// rooms of fixtures/: postures with joints at their limits have nowhere to go at the next step.)
+bool FreezeColumns(const KinematicTree& tree, const Configuration& q, TaskStackWorkspace* ws,
+                   VectorXd* step) {
   bool changed = false;
   for (int i = 0; i < tree.num_columns; ++i) {
     if (ws->frozen[6 + i] || !tree.limits[i].bounded) continue;
-    const double value = q.joints[i];
-    double& rate = (*step)[6 + i];
-    if (value + scale * rate > tree.limits[i].upper) {
-      rate = tree.limits[i].upper - value;
-    } else if (value + scale * rate < tree.limits[i].lower) {
-      rate = tree.limits[i].lower - value;
-    } else {
-      continue;
-    }
+    const double reached = q.joints[i] + (*step)[6 + i];
+    if (reached <= tree.limits[i].upper && reached >= tree.limits[i].lower) continue;
+    (*step)[6 + i] = 0;
     ws->frozen[6 + i] = 1;
     changed = true;
   }
@@ -93,13 +86,11 @@ VectorXd SolveTaskStack(const KinematicTree& tree, const Configuration& q,
   workspace->weight.segment<3>(3).setConstant(1 / std::sqrt(options.rotation_weight));
   workspace->frozen.assign(n, 0);
   VectorXd step = VectorXd::Zero(n);
-  double scale = 1;
   for (int round = 0; round <= tree.num_columns; ++round) {
     SolveOnce(tasks, options.damping, workspace, &step);
-    scale = ClampScale(options, step);
-    if (!FreezeColumns(tree, q, scale, workspace, &step)) break;
+    if (!FreezeColumns(tree, q, workspace, &step)) break;
   }
-  return scale * step;
+  return ClampScale(options, step) * step;
 }
 
 }  // namespace cguide::numeric

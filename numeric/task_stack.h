@@ -38,9 +38,9 @@ struct TaskStackWorkspace {
 /** One Newton step of a prioritised stack [Siciliano 1991; the paper's II-C]: task i is solved by a
  damped pseudo-inverse in the null space of tasks 0 .. i-1. Since every task is a scalar row the
  null spaces are kept as an orthonormal basis of the rows used so far, so that a step costs O(k^2 n)
- for k tasks and n velocities. The step is scaled into the clamps as a whole. Joint limits: a column that the scaled step would
- carry beyond its limit is set to reach the limit, removed, and the stack is solved again (at most n
- times).
+ for k tasks and n velocities. Joint limits: columns that the step would carry beyond their limits
+ are removed, and the stack is solved again (at most n times). The step is then scaled into the
+ clamps as a whole.
  @param tasks ordered by priority, highest first.
  @return the velocity to integrate for unit time. */
 Eigen::VectorXd SolveTaskStack(const KinematicTree& tree, const Configuration& q,
