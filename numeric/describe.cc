@@ -1,6 +1,16 @@
 #include "cguide/numeric/describe.h"
 
+#include <cstdio>
+
 namespace cguide::numeric {
+
+std::string Short(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return text;
+}
+
+std::string Millimetres(double metres) { return Short(1000 * metres) + " mm"; }
 
 std::string DescribePair(const Model& model, const Pair& pair) {
   const std::string& other =

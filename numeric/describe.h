@@ -7,6 +7,12 @@
 
 namespace cguide::numeric {
 
+/** A double with four digits, for people. */
+std::string Short(double x);
+
+/** A length in millimetres, for people: "3.2 mm". */
+std::string Millimetres(double metres);
+
 /** `"LLEG_JOINT5" and "floor"`. */
 std::string DescribePair(const Model& model, const Pair& pair);
 

@@ -34,7 +34,7 @@ std::string Describe(const World& world, const Configuration& q, const Membershi
   if (membership.obstruction == Obstruction::kCollision) {
     const double depth =
         numeric::PairClearance(world, membership.pair, 1.0, &workspace->geometry).depth;
-    if (depth > 0) text << " by about " << 1000 * depth << " mm";
+    if (depth > 0) text << " by about " << numeric::Millimetres(depth);
   } else if (membership.obstruction == Obstruction::kUnstable) {
     text << " with its " << workspace->contacts.size() << " contact points";
   }

@@ -1,7 +1,6 @@
 #include "cguide/verify/audit_report.h"
 
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -12,15 +11,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using numeric::DescribePair;
+using numeric::Millimetres;
 using numeric::Obstruction;
-
-std::string Short(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", x);
-  return text;
-}
-
-std::string Millimetres(double x) { return Short(1000 * x) + " mm"; }
+using numeric::Short;
 
 std::string Place(const Instant& at) {
   return "edge " + std::to_string(at.edge) + ", s = " + Short(at.s);

@@ -135,6 +135,11 @@ std::string NearestName(std::string_view word, const std::vector<std::string>& c
   return nearest == candidates.end() ? std::string() : *nearest;
 }
 
+std::string UnknownWord(std::string_view word, const std::vector<std::string>& words) {
+  return Quote(word) + " is unknown; did you mean \"" + NearestName(word, words) +
+         "\"? Known here: " + Join(words);
+}
+
 std::string Join(const std::vector<std::string>& items, std::size_t limit) {
   std::string text;
   for (std::size_t i = 0; i < items.size() && i < limit; ++i) text += (i ? ", " : "") + items[i];

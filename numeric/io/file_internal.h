@@ -1,9 +1,12 @@
 #pragma once
 
+#include <exception>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "cguide/exact/core/error.h"
 
 namespace cguide::numeric::io {
 
@@ -22,6 +25,9 @@ bool IsUtf8(std::string_view bytes);
  there is no candidate. */
 std::string NearestName(std::string_view word, const std::vector<std::string>& candidates);
 
+/** The sentence for a word that is none of `words`: the nearest one, then all of them. */
+std::string UnknownWord(std::string_view word, const std::vector<std::string>& words);
+
 /** "a, b, c", cut after `limit` items. */
 std::string Join(const std::vector<std::string>& items, std::size_t limit = 40);
 
@@ -36,5 +42,18 @@ double ParseDouble(std::string_view text, std::string* why);
 /** The shortest decimal that reads back as the same double; "-0.0" keeps its sign in JSON readers
  that take "-0" for an integer. Requires x finite. */
 std::string ShortestDouble(double x);
+
+/** Runs `read`; an exception of a library leaves as Error (kInternal) that names the file. */
+template <typename Function>
+auto GuardedRead(const std::filesystem::path& file, Function read) {
+  try {
+    return read();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw Error(Error::Code::kInternal, file.string() + ": reading failed in a library (" +
+                                            e.what() + "); please report the file");
+  }
+}
 
 }  // namespace cguide::numeric::io

@@ -173,16 +173,11 @@ std::string WriteGuide(const Guide& guide) {
 }
 
 Guide ReadGuide(const std::filesystem::path& file) {
-  try {
+  return GuardedRead(file, [&] {
     const std::string name = file.string();
     const nlohmann::json json = ReadJson(file);
     return ReadGuideParts(JsonView(json, name));
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& e) {
-    throw Error(Error::Code::kInternal, file.string() + ": reading failed in a library (" +
-                                            e.what() + "); please report the file");
-  }
+  });
 }
 
 }  // namespace cguide::numeric::io

@@ -211,7 +211,7 @@ Model ReadModelParts(const JsonView& view) {
 }  // namespace
 
 Model ReadModel(const std::filesystem::path& file) {
-  try {
+  return GuardedRead(file, [&] {
     const std::string name = file.string();
     const nlohmann::json json = ReadJson(file);
     const Model model = ReadModelParts(JsonView(json, name));
@@ -221,12 +221,7 @@ Model ReadModel(const std::filesystem::path& file) {
       throw Error(e.code(), name + ": " + e.what());
     }
     return model;
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& e) {
-    throw Error(Error::Code::kInternal, file.string() + ": reading failed in a library (" +
-                                            e.what() + "); please report the file");
-  }
+  });
 }
 
 }  // namespace cguide::numeric::io

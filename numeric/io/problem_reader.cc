@@ -139,7 +139,7 @@ Problem ReadParts(const YamlView& view) {
 }  // namespace
 
 Problem ReadProblem(const std::filesystem::path& file) {
-  try {
+  return GuardedRead(file, [&] {
     const std::string text = ReadTextFile(file, kMaxProblemBytes);
     const YamlNode root = ParseYaml(text, file.string());
     Problem problem = ReadParts(YamlView(root, file));
@@ -148,12 +148,7 @@ Problem ReadProblem(const std::filesystem::path& file) {
     problem.model_digest = Digest(WriteModel(problem.model));
     problem.problem_digest = Digest(text);
     return problem;
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& e) {
-    throw Error(Error::Code::kInternal, file.string() + ": reading failed in a library (" +
-                                            e.what() + "); please report the file");
-  }
+  });
 }
 
 }  // namespace cguide::numeric::io

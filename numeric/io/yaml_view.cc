@@ -142,10 +142,7 @@ std::vector<std::string> YamlView::TextList() const {
 int YamlView::Choice(const std::vector<std::string>& words) const {
   const std::string text = Text();
   const auto found = std::find(words.begin(), words.end(), text);
-  if (found == words.end()) {
-    Fail(Quote(text) + " is unknown; did you mean \"" + NearestName(text, words) +
-         "\"? Known here: " + Join(words));
-  }
+  if (found == words.end()) Fail(UnknownWord(text, words));
   return static_cast<int>(found - words.begin());
 }
 

@@ -77,12 +77,4 @@ void RequireWritable(const std::filesystem::path& file) {
                              : "create the folder " + folder.string() + " or choose another one"));
 }
 
-std::string Short(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", x);
-  return text;
-}
-
-std::string Millimetres(double metres) { return Short(1000 * metres) + " mm"; }
-
 }  // namespace cguide::cli

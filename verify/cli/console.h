@@ -6,9 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "cguide/numeric/describe.h"
 #include "cguide/verify/cli/commands.h"
 
 namespace cguide::cli {
+
+using numeric::Millimetres;
+using numeric::Short;
 
 /** Set by the first Ctrl-C or SIGTERM; a second one ends the process at once. */
 const std::atomic<bool>& InterruptFlag();
@@ -40,11 +44,5 @@ int ThreadCount(const CommonArguments& common);
 /** Fails early where a file could not be written at the end: @throws Error (kIo) unless its folder
  exists and is writable. */
 void RequireWritable(const std::filesystem::path& file);
-
-/** A double with few digits, for people. */
-std::string Short(double x);
-
-/** Millimetres, for people: "3.2 mm". */
-std::string Millimetres(double metres);
 
 }  // namespace cguide::cli

@@ -13,12 +13,12 @@ struct Subject {
   numeric::Problem problem;
   std::string problem_file;
   Path path;
-  std::string edges;     ///< how its maker tested it; empty for foreign paths
-  std::string origin;    ///< tool version and seed; empty for foreign paths
+  std::string edges;   ///< how its maker tested it; empty for foreign paths
+  std::string origin;  ///< tool version and seed; empty for foreign paths
 };
 
-/** Reads a guide (JSON; its problem is the one it names unless `problem_file` is given) or a foreign
- path (CSV; `problem_file` must be given). Warns where the model has changed since.
+/** Reads a guide (JSON; its problem is the one it names unless `problem_file` is given) or a
+ foreign path (CSV; `problem_file` must be given). Warns where the model has changed since.
  @throws Error (kBadInput, kIo). */
 Subject ReadSubject(const CommonArguments& common, const std::string& path_file,
                     const std::string& problem_file);
