@@ -129,6 +129,56 @@ std::vector<bool> ExtremeCorners(const PointSet& set, const std::vector<Face>& f
   return extreme;
 }
 
+/** Facets of a triangulated hull: for each triangle a representative of those coplanar with it. */
+std::vector<int> FacetOfTriangle(const PointSet& set, const std::vector<Face>& faces,
+                                 const std::map<std::pair<int, int>, int>& left_of) {
+  std::vector<int> facet(faces.size());
+  for (std::size_t i = 0; i < facet.size(); ++i) facet[i] = static_cast<int>(i);
+  const auto find = [&](int i) {
+    while (facet[i] != i) i = facet[i] = facet[facet[i]];
+    return i;
+  };
+  for (const auto& [edge, f] : left_of) {
+    const int g = left_of.at({edge.second, edge.first});
+    const bool flat = std::all_of(faces[g].begin(), faces[g].end(), [&](int i) {
+      return CGAL::coplanar(set.points[faces[f][0]], set.points[faces[f][1]],
+                            set.points[faces[f][2]], set.points[i]);
+    });
+    if (flat) facet[find(f)] = find(g);
+  }
+  for (std::size_t i = 0; i < facet.size(); ++i) facet[i] = find(static_cast<int>(i));
+  return facet;
+}
+
+/** The same surface with every facet cut into triangles about its corner of lowest index. Quickhull
+ cuts facets of more than three corners in an order that depends on where its nodes lie in memory,
+ and faces, through the sites placed on them, must be a function of the points. Every corner being
+ extreme, a facet is a strictly convex polygon and no triangle of the fan is degenerate. */
+std::vector<Face> Canonical(const PointSet& set, const std::vector<Face>& faces) {
+  std::map<std::pair<int, int>, int> left_of;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      left_of[{faces[f][k], faces[f][(k + 1) % 3]}] = static_cast<int>(f);
+    }
+  }
+  const std::vector<int> facet = FacetOfTriangle(set, faces, left_of);
+  std::map<int, std::map<int, int>> next;  // facet -> corner -> corner after it
+  for (const auto& [edge, f] : left_of) {
+    if (facet[f] != facet[left_of.at({edge.second, edge.first})]) {
+      next[facet[f]][edge.first] = edge.second;
+    }
+  }
+  std::vector<Face> result;
+  for (const auto& [id, after] : next) {
+    const int apex = after.begin()->first;
+    for (int i = after.at(apex); after.at(i) != apex; i = after.at(i)) {
+      result.push_back({apex, i, after.at(i)});
+    }
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 std::vector<Face> SolidHull(const PointSet& set) {
   std::vector<Face> faces = SolidFaces(set, set.points);
   const std::vector<bool> extreme = ExtremeCorners(set, faces);
@@ -141,7 +191,7 @@ std::vector<Face> SolidHull(const PointSet& set) {
     redundant = redundant || !extreme[i];
   }
   // Among extreme points alone every hull corner is extreme, so one more pass suffices.
-  return redundant ? SolidFaces(set, corners) : faces;
+  return Canonical(set, redundant ? SolidFaces(set, corners) : faces);
 }
 
 Hull Assemble(const PointSet& set, std::vector<Face> faces, std::vector<int> corners) {

@@ -175,7 +175,10 @@ std::string WriteAuditText(const AuditSubject& subject, const Model& model,
   WriteExtreme("contact gap ", audit.contact_gap, Millimetres(audit.contact_gap.value), "", &text);
   if (model.require == GuideRequirement::kStability) {
     WriteExtreme("com margin  ", audit.com_margin, Millimetres(audit.com_margin.value), "", &text);
-    WriteExtreme("force margin", audit.force_margin, Short(audit.force_margin.value), "", &text);
+    WriteExtreme("force margin", audit.force_margin, Short(audit.force_margin.value),
+                 "(of inscribed " + std::to_string(model.contact.generators) +
+                     "-sided pyramids, below that of the round cones)",
+                 &text);
   }
   if (!audit.violations.empty()) text << "violations\n";
   for (const Violation& v : audit.violations) {

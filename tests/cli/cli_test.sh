@@ -94,6 +94,19 @@ section_reproducible() {
   cmp -s "$work/report1.json" "$work/report2.json" || fail "another number of threads gave another report"
 }
 
+section_same_model() {
+  # The canonical model is a function of the files, not of how their paths are spelt.
+  local problem count=0
+  for problem in chair_and_table jvrc1_chair_and_table talos_chair_and_table hyq_floor; do
+    "$program" model -q "$fixtures/problems/$problem.yaml" >"$work/one" 2>/dev/null || continue
+    (cd "$fixtures/problems" && "$program" model -q "$problem.yaml" >"$work/two" 2>/dev/null)
+    cmp -s "$work/one" "$work/two" || fail "$problem: another spelling of the path, another model"
+    count=$((count + 1))
+  done
+  [ "$count" -ge 1 ] || fail "no model could be written"
+  [ "$count" = 4 ] || echo "skipped: $((4 - count)) problems whose robots are not here"
+}
+
 section_limits() {
   expect 4 plan "$fixtures/problems/tunnel_80.yaml" -o "$work/none.json" --iteration-limit 4
   says "no guide found: iteration limit"

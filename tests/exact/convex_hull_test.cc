@@ -1,5 +1,6 @@
 #include "cguide/exact/convex_hull.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -38,6 +39,39 @@ void CheckSolidHull(const Points& input, const Hull& hull) {
     REQUIRE(edges.count({edge.second, edge.first}) == 1);
   }
   CHECK(hull.vertices.size() + hull.faces.size() == edges.size() / 2 + 2);
+}
+
+TEST_CASE("facets are cut about their lowest corner, wherever the memory of the hull lies") {
+  // A prism over a strictly convex polygon has two facets of n corners and n of four.
+  std::mt19937_64 rng(77);
+  for (int n : {4, 7, 12}) {
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < n; ++i) {  // integer points of a parabola
+      points.emplace_back(i - n / 2, (i - n / 2) * (i - n / 2), 0);
+      points.emplace_back(i - n / 2, (i - n / 2) * (i - n / 2), 3);
+    }
+    std::shuffle(points.begin(), points.end(), rng);
+    const Hull first = ConvexHull(points);
+    REQUIRE(first.faces.size() == static_cast<std::size_t>(2 * (n - 2) + 2 * n));
+    std::vector<std::vector<char>> ballast;
+    for (int round = 0; round < 20; ++round) {
+      for (int i = 0; i < 50; ++i) ballast.emplace_back(rng() % 5000);
+      std::shuffle(ballast.begin(), ballast.end(), rng);
+      ballast.resize(ballast.size() / 2);
+      REQUIRE(ConvexHull(points) == first);
+    }
+    for (double z : {0.0, 3.0}) {  // all triangles of a lid share its lowest corner
+      int lowest = 1000;
+      for (std::size_t i = 0; i < first.vertices.size(); ++i) {
+        if (first.vertices[i].z() == z) lowest = std::min(lowest, static_cast<int>(i));
+      }
+      for (const auto& face : first.faces) {
+        const bool lid = std::all_of(face.begin(), face.end(),
+                                     [&](int i) { return first.vertices[i].z() == z; });
+        if (lid) CHECK(face[0] == lowest);
+      }
+    }
+  }
 }
 
 }  // namespace
