@@ -18,6 +18,9 @@ namespace {
 // The page's own audit is coarser than the one of `cguide audit`; its step is printed on it.
 constexpr double kViewStep = 0.01;
 
+// Support regions that reach farther from the centre of mass are not drawn (m).
+constexpr double kLargestRegion = 5;
+
 void AddExtreme(const char* kind, const verify::Extreme& extreme, const std::string& text,
                 const char* unit, std::vector<verify::ViewInstant>* worst) {
   if (!extreme.known) return;
@@ -65,6 +68,12 @@ void AddMargins(const numeric::World& world, const Path& path,
     const double margin = numeric::FindComMargin(query, {}, &workspace.stability).lo;
     if (std::isfinite(margin)) frame.com_margin = margin;
     const auto region = numeric::FindSupportRegion(query, {}, &workspace.stability);
+    // A region without end on some side (a hand that can push up under a table) would be painted
+    // over the whole room; the margin tells as much.
+    const bool bounded = std::all_of(
+        region.vertices_W.begin(), region.vertices_W.end(),
+        [&](const Eigen::Vector3d& p) { return (p - query.com_W).norm() < kLargestRegion; });
+    if (!bounded) continue;
     for (const Eigen::Vector3d& p : region.vertices_W) frame.support_W.push_back(p.head<2>());
   }
 }
