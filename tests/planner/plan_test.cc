@@ -74,7 +74,7 @@ TEST_CASE("PRM solves the floor and answers again from its roadmap") {
 
 TEST_CASE("PRM gets up from the chair") {
   const Room room("chair_and_table");
-  const EdgeOracle oracle = numeric::MakeSampledOracle(room.world, {0.02});
+  const EdgeOracle oracle = numeric::MakeSampledOracle(room.world, {});
   Roadmap one, two;
   const auto plan = [&](int threads, Roadmap* map) {
     return PlanPrm(room.world, room.problem.sampling, room.problem.start, room.problem.goal, oracle,
