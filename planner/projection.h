@@ -11,7 +11,7 @@ namespace cguide::planner {
 
 struct ProjectionOptions {
   int max_iterations = 20;
-  int max_colliding = 1;  ///< consecutive iterates that are stable but not in C_free
+  int max_colliding = 1;         ///< consecutive iterates that are stable but not in C_free
   double search_distance = 0.6;  ///< obstacles farther than this from a site make no task (m)
   int sites_per_body = 4;        ///< tasks that one body may ask for
   /** A task of lowest priority draws the centre of mass towards the mean contact point. */
