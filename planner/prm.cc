@@ -13,8 +13,8 @@ namespace {
 struct Growth {
   std::optional<Configuration> node;
   std::vector<std::pair<int, std::vector<Configuration>>> connections;
-  int stub_from = -1;               // the nearest node, where its connection failed on the way
-  std::vector<Configuration> stub;  // and how far it came
+  int branch_from = -1;               // the nearest node, where its connection failed on the way
+  std::vector<Configuration> branch;  // and how far it came
   PlannerCounters counters;
 };
 
@@ -101,7 +101,7 @@ class Builder {
       if (std::find(joined.begin(), joined.end(), component) != joined.end()) continue;
       Chain chain = Connect(roadmap_.node(i), *growth->node, Context(worker, &growth->counters));
       if (!chain.reached) {
-        KeepStub(i, std::move(chain.nodes), growth);
+        KeepBranch(i, std::move(chain.nodes), growth);
         continue;
       }
       chain.nodes.pop_back();
@@ -112,16 +112,16 @@ class Builder {
 
   // A failed connection has still explored: the end of the first one becomes a node of its own, so
   // that the roadmap also grows where samples rarely are projected, as out of a chair.
-  static void KeepStub(int from, std::vector<Configuration> nodes, Growth* growth) {
-    if (growth->stub_from >= 0 || nodes.empty()) return;
-    growth->stub_from = from;
-    growth->stub = std::move(nodes);
+  static void KeepBranch(int from, std::vector<Configuration> nodes, Growth* growth) {
+    if (growth->branch_from >= 0 || nodes.empty()) return;
+    growth->branch_from = from;
+    growth->branch = std::move(nodes);
   }
 
-  void MergeStub(const Growth& growth) {
-    if (growth.stub_from < 0) return;
-    const int end = roadmap_.AddNode(growth.stub.back());
-    roadmap_.AddEdge(growth.stub_from, end, {growth.stub.begin(), growth.stub.end() - 1});
+  void MergeBranch(const Growth& growth) {
+    if (growth.branch_from < 0) return;
+    const int end = roadmap_.AddNode(growth.branch.back());
+    roadmap_.AddEdge(growth.branch_from, end, {growth.branch.begin(), growth.branch.end() - 1});
   }
 
   int Merge(const Growth& growth) {
@@ -131,7 +131,7 @@ class Builder {
     for (const auto& [neighbour, inner] : growth.connections) {
       roadmap_.AddEdge(neighbour, index, inner);
     }
-    MergeStub(growth);
+    MergeBranch(growth);
     RefreshComponents();
     return index;
   }
