@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include "cguide/numeric/cone_membership.h"
+
+namespace cguide::numeric {
+
+/** A 6 x 6 matrix by columns, padded so that operations on a column fill whole vector registers:
+ entry (i, k) is c[k][i]. */
+struct alignas(64) Matrix6 {
+  double c[6][8] = {};
+};
+
+/** What the float simplex proposes. Nothing here is trusted. */
+struct ConeProposal {
+  bool feasible = false;
+  bool full_rank = false;
+  int basis[6] = {-1, -1, -1, -1, -1, -1};  ///< generators; -1 where an artificial column is left
+  Matrix6 inverse;                          ///< of the scaled basis columns
+  double x[8] = {};                         ///< basic weights of the scaled columns, padded
+  WrenchCone::Vector6d y = WrenchCone::Vector6d::Zero();  ///< y.a <~ 0 < y.v where infeasible
+  int pivots = 0;
+};
+
+struct ConeWorkspace::Scratch {
+  ConeProposal proposal;
+  std::vector<double> price;
+};
+
+/** Phase 1 of the simplex method from an artificial basis. */
+void SolvePhaseOne(const WrenchCone& cone, const WrenchDemand& v, ConeWorkspace::Scratch* scratch);
+
+/** price[j] = y.a_j for the scaled columns, padding (0) included: ((y0 a0 + y1 a1) + (y2 a2 + y3
+ a3)) + (y4 a4 + y5 a5), each operation rounded once. @return the index of the largest price, -1
+ without columns. */
+int Price(const WrenchCone& cone, const double (&y)[6], std::vector<double>* price);
+
+/** A bound kappa on |I - R B*|_inf for the real columns of a basis: where it is below 1, B* is
+ * regular. */
+double BoundKappa(const WrenchCone& cone, const int (&basis)[6], const Matrix6& R);
+
+/** Whether v is provably a positive combination of the basis, given its kappa; reports the refined
+ weights. */
+bool ProvePositive(const WrenchCone& cone, const int (&basis)[6], const Matrix6& R, double kappa,
+                   const WrenchDemand& v, double (&x)[8]);
+
+/** Makes y.a < 0 hold for every real column that is not zero, by leaning y towards -w for some w
+ with w.a > 0, where there is one; false where that fails. */
+bool LeanAway(const WrenchCone& cone, ConeWorkspace::Scratch* scratch, WrenchCone::Vector6d* y);
+
+/** Whether y.v > 0 for the real v. */
+bool ProvePositiveProduct(const WrenchCone::Vector6d& y, const WrenchDemand& v);
+
+/** The exact stage; `proposal` says where to start. */
+exact::ConeMembership DecideExactly(const WrenchCone& cone, const WrenchDemand& v,
+                                    const ConeProposal& proposal);
+
+}  // namespace cguide::numeric

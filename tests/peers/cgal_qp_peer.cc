@@ -1,0 +1,23 @@
+#include "tests/peers/cgal_qp_peer.h"
+
+#include <CGAL/Gmpzf.h>
+#include <CGAL/QP_functions.h>
+#include <CGAL/QP_models.h>
+
+#include <vector>
+
+namespace cguide::peers {
+
+bool CgalQpMember(std::span<const Eigen::Matrix<double, 6, 1>> generators,
+                  const Eigen::Matrix<double, 6, 1>& v) {
+  std::vector<const double*> columns;
+  columns.reserve(generators.size());
+  for (const auto& a : generators) columns.push_back(a.data());
+  const auto program = CGAL::make_nonnegative_linear_program_from_iterators(
+      static_cast<int>(generators.size()), 6, columns.data(), v.data(),
+      CGAL::Const_oneset_iterator<CGAL::Comparison_result>(CGAL::EQUAL),
+      CGAL::Const_oneset_iterator<double>(0));
+  return !CGAL::solve_nonnegative_linear_program(program, CGAL::Gmpzf()).is_infeasible();
+}
+
+}  // namespace cguide::peers

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+// CGAL's QP_solver as its users call it [CGAL manual, "Linear and Quadratic Programming Solver"]:
+// the nonnegative linear program A lambda = v with a zero objective, given by iterators, doubles as
+// input and Gmpzf as the exact number type, default options.
+namespace cguide::peers {
+
+/** Whether v is in the closed cone of the generators: exact. */
+bool CgalQpMember(std::span<const Eigen::Matrix<double, 6, 1>> generators,
+                  const Eigen::Matrix<double, 6, 1>& v);
+
+}  // namespace cguide::peers
