@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "cguide/numeric/convex_internal.h"
 
@@ -11,6 +12,8 @@ struct DifferencePoint {
   Eigen::Vector3d w;  ///< (c_A + a) - (c_B + b)
   Eigen::Vector3d a;  ///< of core A, relative to c_A
   Eigen::Vector3d b;  ///< of core B, relative to c_B
+  int i = -1;         ///< index of the point of A, where A is given by points
+  int j = -1;
 };
 
 /** What the iteration of Gilbert, Johnson and Keerthi [1988] proposes for the cores of two sets.
@@ -30,5 +33,9 @@ struct GjkResult {
  lower bound of the core distance, exceeds `enough`. `v0` is a first guess of the direction. */
 void Gjk(const Convex& a, const Convex& b, const Eigen::Vector3d& v0, double enough,
          GjkResult* result);
+
+/** The same for the hulls of two non-empty sets of points. */
+void Gjk(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b,
+         const Eigen::Vector3d& v0, double enough, GjkResult* result);
 
 }  // namespace cguide::numeric

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+
+namespace cguide::peers {
+
+/** A collision object of FCL, built once and asked often, as its users do. */
+class FclObject {
+ public:
+  /** The hull of points in general position (its triangulated faces are what FCL wants). */
+  static FclObject Hull(std::span<const Eigen::Vector3d> points);
+  /** An axis-aligned box. */
+  static FclObject Box(const Eigen::Vector3d& center, const Eigen::Vector3d& half);
+
+  struct Data;
+
+ private:
+  friend double FclDistance(const FclObject&, const FclObject&, double);
+  friend bool FclCollide(const FclObject&, const FclObject&);
+  std::shared_ptr<Data> data_;
+};
+
+/** fcl::distance with the libccd solver, its default; `tolerance` is distance_tolerance (FCL's
+ default: 1e-6). Negative where FCL sees a collision, NaN where it throws. */
+double FclDistance(const FclObject& a, const FclObject& b, double tolerance);
+
+/** fcl::collide, likewise. */
+bool FclCollide(const FclObject& a, const FclObject& b);
+
+}  // namespace cguide::peers
