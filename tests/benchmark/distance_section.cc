@@ -1,0 +1,303 @@
+#include "tests/benchmark/distance_section.h"
+
+#include <cmath>
+#include <random>
+
+#include "cguide/numeric/clearance_internal.h"
+#include "cguide/numeric/convex_distance.h"
+#include "tests/benchmark/timing.h"
+#include "tests/cases/convex_pairs.h"
+#include "tests/peers/bullet_peer.h"
+#include "tests/peers/cgal_peer.h"
+#include "tests/peers/fcl_peer.h"
+
+namespace cguide::benchmark_tools {
+namespace {
+
+using Eigen::Vector3d;
+using Points = std::vector<Vector3d>;
+using test::ConvexPair;
+
+volatile double sink = 0;  // Keeps results alive.
+
+std::vector<Vector3q> Lifted(const Points& points) {
+  std::vector<Vector3q> result;
+  for (const Vector3d& p : points) result.push_back(Lift(p));
+  return result;
+}
+
+Rational SquaredTruth(const ConvexPair& pair) {
+  return exact::SquaredConvexDistance(Lifted(pair.a), Lifted(pair.b)).squared;
+}
+
+// Random hulls on ellipsoids; `how`: 0 apart by 0.1 to 0.6 m, 1 near touch, 2 overlapping.
+ConvexPair TimedPair(std::mt19937_64& rng, int vertices, int how) {
+  using namespace test::cases;
+  if (how == 0) return AtDistance(rng, vertices, vertices, Uniform(rng, 0.1, 0.6));
+  if (how == 1) return AtDistance(rng, vertices, vertices, Tiny(rng, 12, 3));
+  ConvexPair pair{Ellipsoid(rng, vertices, 0.3), Ellipsoid(rng, vertices, 0.3), {}};
+  Move(&pair.b, 0.1 * Direction(rng));
+  return pair;
+}
+
+long ExactRow(std::FILE* out, const char* name, const std::vector<ConvexPair>& pairs) {
+  std::vector<double> ours, cgal, ratio;
+  long wrong = 0, signs = 0, rounds = 0;
+  for (const ConvexPair& pair : pairs) {
+    const peers::CgalPoints a(pair.a), b(pair.b);
+    Rational theirs;
+    numeric::HullDistance distance;
+    cgal.push_back(MicrosecondsOf(1, [&] { theirs = peers::CgalSquaredDistance(a, b); }));
+    ours.push_back(MicrosecondsOf(20, [&] {
+      distance = numeric::SquaredConvexDistance(std::span(pair.a), std::span(pair.b));
+    }));
+    ratio.push_back(cgal.back() / ours.back());
+    wrong += distance.squared != theirs;
+    signs += distance.exact_signs;
+    rounds += distance.rounds;
+  }
+  const double n = static_cast<double>(pairs.size());
+  std::fprintf(out, "%-24s %9.1f %9.2f %8.0fx   %6.2f %6.2f %6ld\n", name, Median(cgal),
+               Median(ours), Median(ratio), static_cast<double>(signs) / n,
+               static_cast<double>(rounds) / n, wrong);
+  return wrong;
+}
+
+long ReportExact(std::FILE* out, int count) {
+  std::fprintf(out, "\nExact squared distance of convex hulls (us, medians; ratio of each pair)\n");
+  std::fprintf(out, "%-24s %9s %9s %9s   %6s %6s %6s\n", "vertices, pairs", "CGAL", "ours", "ratio",
+               "signs", "rounds", "differ");
+  long wrong = 0;
+  std::mt19937_64 rng(20261126);
+  static constexpr const char* kHow[] = {"apart", "near touch", "overlapping"};
+  for (int how = 0; how < 3; ++how) {
+    for (const int vertices : {8, 20, 60, 200}) {
+      std::vector<ConvexPair> pairs;
+      for (int i = 0; i < count; ++i) pairs.push_back(TimedPair(rng, vertices, how));
+      char name[40];
+      std::snprintf(name, sizeof name, "%d %s", vertices, kHow[how]);
+      wrong += ExactRow(out, name, pairs);
+    }
+  }
+  for (const auto category : {test::PairCategory::kGridBoxes, test::PairCategory::kParallelFaces,
+                              test::PairCategory::kTouching}) {
+    std::vector<ConvexPair> pairs;
+    for (int i = 0; i < count; ++i) pairs.push_back(MakeConvexPair(category, rng));
+    wrong += ExactRow(out, NameOf(category), pairs);
+  }
+  return wrong;
+}
+
+numeric::Convex PlacedHull(const Points& points, Points* relative) {
+  Vector3d lower = points[0], upper = points[0];
+  for (const Vector3d& p : points) {
+    lower = lower.cwiseMin(p);
+    upper = upper.cwiseMax(p);
+  }
+  numeric::Convex s;
+  s.kind = numeric::CoreKind::kPoints;
+  s.c = (lower + upper) / 2;
+  for (const Vector3d& p : points) {
+    relative->push_back(p - s.c);
+    s.reach = std::max(s.reach, relative->back().norm());
+    s.half = s.half.cwiseMax(relative->back().cwiseAbs());
+  }
+  s.num_points = static_cast<int>(relative->size());
+  s.error = numeric::PlacementError(0, 0, s.reach + s.c.norm(), s.c.norm());
+  return s;
+}
+
+numeric::Convex PlacedBox(const test::BoxCase& box) {
+  numeric::Convex s;
+  s.c = box.center;
+  s.half = box.half;
+  s.reach = box.half.norm() * (1 + 1e-15);
+  s.error = numeric::PlacementError(0, 0, s.reach + s.c.norm(), s.c.norm());
+  return s;
+}
+
+struct EnclosurePair {
+  ConvexPair points;
+  Points relative[2];
+  numeric::Convex shape[2];
+  peers::FclObject fcl[2];
+  peers::BulletShape bullet[2];
+};
+
+EnclosurePair Prepare(const ConvexPair& pair) {
+  EnclosurePair e;
+  e.points = pair;
+  for (int side = 0; side < 2; ++side) {
+    const Points& points = side == 0 ? pair.a : pair.b;
+    if (pair.boxes) {
+      const test::BoxCase& box = (*pair.boxes)[side];
+      e.shape[side] = PlacedBox(box);
+      e.fcl[side] = peers::FclObject::Box(box.center, box.half);
+      e.bullet[side] = peers::BulletShape::Box(box.center, box.half);
+    } else {
+      e.shape[side] = PlacedHull(points, &e.relative[side]);
+      e.fcl[side] = peers::FclObject::Hull(points);
+      e.bullet[side] = peers::BulletShape::Hull(points);
+    }
+  }
+  return e;
+}
+
+long EnclosureRow(std::FILE* out, const char* name, const std::vector<ConvexPair>& pairs) {
+  std::vector<double> times[5], ratios[4];
+  double width = 0;
+  long wrong = 0;
+  numeric::StageCounts counts;
+  for (const ConvexPair& pair : pairs) {
+    EnclosurePair e = Prepare(pair);
+    for (int side = 0; side < 2; ++side) {
+      if (!pair.boxes) e.shape[side].points = e.relative[side].data();
+    }
+    const Rational truth = SquaredTruth(pair);
+    numeric::DirectedClearance placed;
+    numeric::DistanceBounds bounds;
+    constexpr int kRepeats = 50;
+    const double us[5] = {
+        MicrosecondsOf(
+            kRepeats,
+            [&] { placed = numeric::ConvexClearance(e.shape[0], e.shape[1], INFINITY, &counts); }),
+        MicrosecondsOf(kRepeats, [&] { bounds = numeric::BoundConvexDistance(pair.a, pair.b); }),
+        MicrosecondsOf(kRepeats, [&] { sink = peers::FclDistance(e.fcl[0], e.fcl[1], 1e-12); }),
+        MicrosecondsOf(kRepeats, [&] { sink = peers::FclDistance(e.fcl[0], e.fcl[1], 1e-6); }),
+        MicrosecondsOf(kRepeats, [&] { sink = peers::BulletDistance(e.bullet[0], e.bullet[1]); })};
+    for (int k = 0; k < 5; ++k) times[k].push_back(us[k]);
+    for (int k = 0; k < 4; ++k) ratios[k].push_back(us[k % 2] / us[2 + k / 2]);
+    for (const auto& [lo, hi] :
+         {std::pair{placed.lo, placed.hi}, std::pair{bounds.lo, bounds.hi}}) {
+      wrong += Lift(lo) * Lift(lo) > truth || Lift(hi) * Lift(hi) < truth;
+      width = std::max(width, hi - lo);
+    }
+  }
+  std::fprintf(out, "%-14s %8.2f %8.2f %8.2f %8.2f %8.2f   %6.2f %6.2f %6.2f %6.2f   %8.1e %5ld\n",
+               name, Median(times[0]), Median(times[1]), Median(times[2]), Median(times[3]),
+               Median(times[4]), Median(ratios[0]), Median(ratios[1]), Median(ratios[2]),
+               Median(ratios[3]), width, wrong);
+  return wrong;
+}
+
+long ReportEnclosures(std::FILE* out, int count) {
+  std::fprintf(out,
+               "\nEnclosures of distances (us, medians), ratios to FCL 1e-12 and FCL 1e-6\n"
+               "(placed: hull or box with pose and error, points: sets of doubles)\n");
+  std::fprintf(out, "%-14s %8s %8s %8s %8s %8s   %13s %13s   %8s %5s\n", "pairs", "placed",
+               "points", "FCL e-12", "FCL e-6", "Bullet", "placed,points", "placed,points", "width",
+               "wrong");
+  std::mt19937_64 rng(77);
+  long wrong = 0;
+  for (const int vertices : {8, 20, 60, 200}) {
+    std::vector<ConvexPair> pairs;
+    for (int i = 0; i < count; ++i) pairs.push_back(TimedPair(rng, vertices, 0));
+    wrong += EnclosureRow(out, std::to_string(vertices).c_str(), pairs);
+  }
+  std::vector<ConvexPair> boxes;
+  while (static_cast<int>(boxes.size()) < count) {
+    ConvexPair pair = MakeConvexPair(test::PairCategory::kGridBoxes, rng);
+    if (SquaredTruth(pair) > 0) boxes.push_back(pair);
+  }
+  return wrong + EnclosureRow(out, "boxes", boxes);
+}
+
+// What a solver got wrong, per category.
+struct Faults {
+  long far = 0;            // both see a gap, off by more than 1 mm
+  long false_contact = 0;  // a collision where the sets are farther than 1e-9 apart
+  long false_free = 0;     // more than 1e-9 where the sets meet
+  long threshold = 0;      // the wrong side of 0.01 m, exactly
+  long failed = 0;
+  double error = 0;
+
+  void Count(double answer, const Rational& squared) {
+    const double truth = std::sqrt(NearestDouble(squared));
+    if (std::isnan(answer)) {
+      ++failed;
+      return;
+    }
+    const double distance = std::max(answer, 0.0);
+    far += answer > 0 && squared > 0 && std::abs(distance - truth) > 1e-3;
+    false_contact += answer <= 0 && truth > 1e-9;
+    false_free += answer > 1e-9 && squared == 0;
+    const Rational at = Lift(0.01) * Lift(0.01);
+    threshold += (Lift(distance) * Lift(distance) > at) != (squared > at);
+    error = std::max(error, std::abs(distance - truth));
+  }
+};
+
+void VerdictRow(std::FILE* out, const char* category, const char* name, const Faults& f) {
+  std::fprintf(out, "%-20s %-10s %6ld %6ld %6ld %6ld %6ld   %8.1e\n", category, name, f.far,
+               f.false_contact, f.false_free, f.threshold, f.failed, f.error);
+}
+
+long ReportVerdicts(std::FILE* out, int count) {
+  std::fprintf(
+      out,
+      "\nWrong answers in %d pairs: off by more than 1 mm, false contact, false free, wrong\n"
+      "side of 0.01 m, exception; largest error (m). Ours: bounds that exclude the truth or\n"
+      "a wrong sign count as `far` and `side`, undecided signs of the fast stage as `failed`\n",
+      count);
+  std::fprintf(out, "%-20s %-10s %6s %6s %6s %6s %6s   %8s\n", "category", "solver", "far",
+               "contact", "free", "side", "failed", "error");
+  long wrong = 0;
+  for (const auto category : test::kPairCategories) {
+    std::mt19937_64 rng(static_cast<unsigned>(category) + 1);
+    Faults loose, tight, bullet, ours;
+    for (int i = 0; i < count; ++i) {
+      const ConvexPair pair = MakeConvexPair(category, rng);
+      const EnclosurePair e = Prepare(pair);
+      const Rational truth = SquaredTruth(pair);
+      loose.Count(peers::FclDistance(e.fcl[0], e.fcl[1], 1e-6), truth);
+      tight.Count(peers::FclDistance(e.fcl[0], e.fcl[1], 1e-12), truth);
+      bullet.Count(peers::BulletDistance(e.bullet[0], e.bullet[1]), truth);
+      const numeric::DistanceBounds bounds = numeric::BoundConvexDistance(pair.a, pair.b);
+      ours.far += Lift(bounds.lo) * Lift(bounds.lo) > truth;
+      ours.far += Lift(bounds.hi) * Lift(bounds.hi) < truth;
+      ours.error = std::max(ours.error, bounds.hi - bounds.lo);
+      const numeric::RoundedPoints a{pair.a, 0}, b{pair.b, 0};
+      const Sign sign = SignOf(Rational(truth - Lift(0.01) * Lift(0.01)));
+      ours.threshold += numeric::CompareDistance(a, b, 0.01) != sign;
+      ours.failed += !numeric::TryCompareDistance(a, b, 0.01);
+      ours.threshold +=
+          numeric::SquaredConvexDistance(std::span(pair.a), std::span(pair.b)).squared != truth;
+    }
+    VerdictRow(out, NameOf(category), "FCL 1e-6", loose);
+    VerdictRow(out, "", "FCL 1e-12", tight);
+    VerdictRow(out, "", "Bullet", bullet);
+    VerdictRow(out, "", "ours", ours);
+    wrong += ours.far + ours.threshold;
+  }
+  return wrong;
+}
+
+long CompareTwins(std::FILE* out, int count) {
+  std::mt19937_64 rng(99);
+  long wrong = 0, filtered = 0, settled = 0, refined = 0;
+  for (int i = 0; i < count; ++i) {
+    const ConvexPair pair = MakeConvexPair(test::kPairCategories[i % 9], rng);
+    const auto distance = numeric::SquaredConvexDistance(std::span(pair.a), std::span(pair.b));
+    wrong += distance.squared != SquaredTruth(pair);
+    filtered += distance.rounds == 0 && distance.exact_signs == 0;
+    settled += distance.rounds == 0 && distance.exact_signs > 0;
+    refined += distance.rounds > 0;
+  }
+  std::fprintf(out,
+               "\nTwins on %d adversarial pairs: wrong %ld; doubles alone %ld, integers for signs "
+               "%ld, refined %ld\n",
+               count, wrong, filtered, settled, refined);
+  return wrong;
+}
+
+}  // namespace
+
+long ReportDistances(std::FILE* out, const DistanceReportOptions& options) {
+  long wrong = ReportExact(out, options.timing_pairs);
+  wrong += ReportEnclosures(out, options.timing_pairs);
+  wrong += ReportVerdicts(out, options.verdict_pairs);
+  if (options.twin_pairs > 0) wrong += CompareTwins(out, options.twin_pairs);
+  return wrong;
+}
+
+}  // namespace cguide::benchmark_tools
