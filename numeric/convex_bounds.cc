@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -15,38 +16,52 @@ using Points = std::span<const Vector3d>;
 
 constexpr double kShort = 1e-140;  // Below it squares of lengths near underflow.
 
-// The least n.(p - origin) over the points, and the greatest sum |n_k (p - origin)_k|.
-struct Extent {
-  double least = INFINITY;
-  double magnitude = 0;
-};
+// A set and what the bounds ask about it.
+struct Measured {
+  PointLanes lanes;
+  PointSet set;
 
-Extent ExtentAlong(Points points, const Vector3d& origin, const Vector3d& n) {
-  Extent extent;
-  for (const Vector3d& p : points) {
-    const double x = n[0] * (p[0] - origin[0]), y = n[1] * (p[1] - origin[1]),
-                 z = n[2] * (p[2] - origin[2]);
-    extent.least = std::min(extent.least, x + y + z);
-    extent.magnitude = std::max(extent.magnitude, std::abs(x) + std::abs(y) + std::abs(z));
+  explicit Measured(Points points) : lanes(points), set{points, &lanes} {}
+  Measured(const Measured&) = delete;
+  Measured& operator=(const Measured&) = delete;
+
+  double Largest() const {
+    return std::max(lanes.lower().cwiseAbs().maxCoeff(), lanes.upper().cwiseAbs().maxCoeff());
   }
-  return extent;
-}
+};
 
 // Weak duality: for any n, d |n| >= min_i n.a_i - max_j n.b_j
 //   = n.w + min_i n.(a_i - a_0) - max_j n.(b_j - b_0),  w = a_0 - b_0 a corner of the proposal.
-// Every product is off by at most 2.1 u of its magnitude (a rounded difference and a product), the
-// two additions by as much again: 4.2 u of `magnitude`; the three terms are then added within 2.1 u
-// of the sum of their magnitudes; underflow costs each of the products 2^-1075. 8 u and 2^-1000
-// cover it. n is divided by its computed length, so |n| = 1 within 8 u, and d >= value / |n|.
-double LowerBound(Points a, Points b, const GjkResult& gjk, double length) {
-  const Vector3d n = gjk.v / length;
-  const Vector3d &p = gjk.simplex[0].a, &q = gjk.simplex[0].b;
-  const Extent at_a = ExtentAlong(a, p, n), at_b = ExtentAlong(b, q, -n);
-  const Extent between = ExtentAlong(Points(&p, 1), q, n);
-  const double value = between.least + at_a.least + at_b.least;
-  const double error =
-      8 * kUnit * (between.magnitude + at_a.magnitude + at_b.magnitude) + 0x1p-1000;
+// With m(d) = sum |n_k d_k| every product is off by at most 2.1 u of its magnitude (a rounded
+// difference and a product), two additions by as much again: 4.2 u m. The three terms are added
+// within 2.1 u of the sum of their magnitudes; underflow costs each of the products 2^-1075. 8 u
+// and 2^-1000 cover it, the rounding of m included, with m of a set taken at the far sides of its
+// box. n is divided by its computed length, so |n| = 1 within 8 u, and d >= value / |n|.
+double LowerBound(const Measured& a, const Measured& b, const DifferencePoint& corner,
+                  const Vector3d& n) {
+  const double value =
+      n.dot(corner.w) + a.lanes.LeastFrom(corner.a, n) + b.lanes.LeastFrom(corner.b, -n);
+  const Vector3d farness =
+      corner.w.cwiseAbs() + a.lanes.Farness(corner.a) + b.lanes.Farness(corner.b);
+  const double error = 8 * kUnit * n.cwiseAbs().dot(farness) + 0x1p-1000;
   return std::max(0.0, (value - error) * (1 - 16 * kUnit));
+}
+
+// The normal of the simplex, free of the cancellation in v: e_1 x e_2 or e x (w_0 x e), of edges
+// that are differences within one set where corners share the other's point. Unit; zero if the
+// simplex has none. Any direction is a valid bound, so nothing is proven here.
+Vector3d NormalOf(const GjkResult& gjk) {
+  const auto edge = [&gjk](int k) -> Vector3d {
+    const DifferencePoint &p = gjk.simplex[0], &q = gjk.simplex[k];
+    return (q.a - p.a) - (q.b - p.b);
+  };
+  if (gjk.size < 2 || gjk.size > 3) return Vector3d::Zero();
+  const Vector3d e = edge(1);
+  Vector3d n = gjk.size == 3 ? e.cross(edge(2)) : e.cross(gjk.simplex[0].w.cross(e));
+  if (n.dot(gjk.simplex[0].w) < 0) n = -n;
+  const double length = n.norm();
+  if (!(length > kShort)) return Vector3d::Zero();
+  return n / length;
 }
 
 // v = sum weight_k w_k with weights >= 0 that sum to S, |S - 1| <= 8 u, so v / S is a difference of
@@ -61,35 +76,35 @@ double UpperBound(const GjkResult& gjk, double length) {
   return length * (1 + 8 * kUnit) + 24 * kUnit * largest + 0x1p-500;
 }
 
-double Largest(Points points) {
-  double largest = 0;
-  bool finite = true;
-  for (const Vector3d& p : points) {
-    const double norm = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
-    finite &= std::abs(p[0] + p[1] + p[2]) <= INFINITY;
-    largest = std::max(largest, norm);
-  }
-  Require(finite && largest < INFINITY, "a coordinate is not finite");
-  return largest;
-}
-
 // The iteration may stop as soon as the lower bound exceeds `enough`.
-DistanceBounds Bounds(Points a, Points b, double enough) {
-  RequireRoundToNearest();
-  Require(!a.empty() && !b.empty(), "the distance of an empty hull is not defined");
+DistanceBounds Bounds(const Measured& a, const Measured& b, double enough) {
   DistanceBounds bounds{0, INFINITY};
-  if (std::max(Largest(a), Largest(b)) > kLargest) return bounds;
+  if (std::max(a.Largest(), b.Largest()) > kLargest) return bounds;
   GjkResult gjk;
-  Gjk(a, b, a[0] - b[0], enough, &gjk);
-  const double length = gjk.v.norm();
+  const Vector3d &p = a.set.points[0], &q = b.set.points[0];
+  Gjk(a.set, b.set, p - q, enough, &gjk);
   if (gjk.size == 0) {
     gjk.size = 1;
-    gjk.simplex[0] = {a[0] - b[0], a[0], b[0], 0, 0};
+    gjk.simplex[0] = {p - q, p, q, 0, 0};
     gjk.v = gjk.simplex[0].w;
   }
-  bounds.hi = UpperBound(gjk, gjk.v.norm());
-  if (!gjk.overlap && length > kShort) bounds.lo = LowerBound(a, b, gjk, length);
+  const double length = gjk.v.norm();
+  bounds.hi = UpperBound(gjk, length);
+  if (gjk.overlap) return bounds;
+  if (length > kShort) bounds.lo = LowerBound(a, b, gjk.simplex[0], gjk.v / length);
+  if (!(bounds.hi - bounds.lo <= 1e-3 * bounds.hi)) {
+    bounds.lo = std::max(bounds.lo, LowerBound(a, b, gjk.simplex[0], NormalOf(gjk)));
+  }
   return bounds;
+}
+
+void CheckSets(Points a, Points b) {
+  RequireRoundToNearest();
+  Require(!a.empty() && !b.empty(), "the distance of an empty hull is not defined");
+}
+
+void CheckFinite(const Measured& a, const Measured& b) {
+  Require(a.lanes.is_finite() && b.lanes.is_finite(), "a coordinate is not finite");
 }
 
 void CheckRadius(double radius) {
@@ -98,20 +113,28 @@ void CheckRadius(double radius) {
 
 }  // namespace
 
-DistanceBounds BoundConvexDistance(Points a, Points b) { return Bounds(a, b, INFINITY); }
+DistanceBounds BoundConvexDistance(Points a, Points b) {
+  CheckSets(a, b);
+  const Measured p(a), q(b);
+  CheckFinite(p, q);
+  return Bounds(p, q, INFINITY);
+}
 
 std::optional<Sign> TryCompareDistance(const RoundedPoints& a, const RoundedPoints& b,
                                        double threshold) {
   CheckRadius(a.radius);
   CheckRadius(b.radius);
   Require(std::isfinite(threshold), "the threshold is not finite");
+  CheckSets(a.points, b.points);
+  const Measured p(a.points), q(b.points);
+  CheckFinite(p, q);
   // Two additions, each within u of its result.
   const double reach = a.radius + b.radius + threshold;
   const double error = 4 * kUnit * (a.radius + b.radius + std::abs(threshold));
   if (!(error < INFINITY)) return std::nullopt;
   if (reach + error < 0) return Sign::kPositive;
   const auto decide = [&](double enough) -> std::optional<Sign> {
-    const DistanceBounds bounds = Bounds(a.points, b.points, enough);
+    const DistanceBounds bounds = Bounds(p, q, enough);
     if (bounds.lo > reach + error) return Sign::kPositive;
     if (bounds.hi < reach - error) return Sign::kNegative;
     return std::nullopt;

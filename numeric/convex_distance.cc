@@ -16,31 +16,41 @@ namespace {
 using Eigen::Vector3d;
 using Points = std::span<const Vector3d>;
 
-double LargestCoordinate(Points points) {
-  double largest = 0;
-  bool finite = true;
-  for (const Vector3d& p : points) {
-    for (const double x : {p[0], p[1], p[2]}) {
-      finite &= std::abs(x) <= std::numeric_limits<double>::max();
-      largest = std::max(largest, std::abs(x));
-    }
-  }
-  Require(finite, "a coordinate is not finite");
-  return largest;
-}
+// Both sets with their lanes, which live here.
+struct Prepared {
+  PointLanes a, b;
+  HullPair hulls;
 
-// Checks the input; the largest magnitude of its coordinates.
-double Checked(Points a, Points b) {
+  Prepared(Points points_a, Points points_b) : a(points_a), b(points_b) {
+    hulls.a = {points_a, &a};
+    hulls.b = {points_b, &b};
+    hulls.filter = Largest() <= kLargest;
+  }
+  Prepared(const Prepared&) = delete;
+  Prepared& operator=(const Prepared&) = delete;
+
+  double Largest() const {
+    if (!a.is_finite() || !b.is_finite()) return INFINITY;
+    return std::max({a.lower().cwiseAbs().maxCoeff(), a.upper().cwiseAbs().maxCoeff(),
+                     b.lower().cwiseAbs().maxCoeff(), b.upper().cwiseAbs().maxCoeff()});
+  }
+};
+
+template <typename Point>
+void CheckSizes(std::span<const Point> a, std::span<const Point> b) {
   RequireRoundToNearest();
   Require(!a.empty() && !b.empty(), "the distance of an empty hull is not defined");
-  return std::max(LargestCoordinate(a), LargestCoordinate(b));
+}
+
+void CheckFinite(const Prepared& prepared) {
+  Require(prepared.a.is_finite() && prepared.b.is_finite(), "a coordinate is not finite");
 }
 
 Simplex Propose(const HullPair& hulls) {
   Simplex simplex;
   if (hulls.filter) {
     GjkResult gjk;
-    Gjk(hulls.a, hulls.b, hulls.a[0] - hulls.b[0], INFINITY, &gjk);
+    Gjk(hulls.a, hulls.b, hulls.a.points[0] - hulls.b.points[0], INFINITY, &gjk);
     for (int k = 0; k < gjk.size; ++k) simplex.Push({gjk.simplex[k].i, gjk.simplex[k].j});
   }
   if (simplex.size == 0) simplex.Push({0, 0});
@@ -83,14 +93,6 @@ HullDistance Decide(HullPair* hulls) {
   }
 }
 
-HullPair MakePair(Points a, Points b) {
-  HullPair hulls;
-  hulls.filter = Checked(a, b) <= kLargest;
-  hulls.a = a;
-  hulls.b = b;
-  return hulls;
-}
-
 std::vector<Vector3d> NearestDoubles(std::span<const Vector3q> points) {
   std::vector<Vector3d> result;
   result.reserve(points.size());
@@ -100,41 +102,34 @@ std::vector<Vector3d> NearestDoubles(std::span<const Vector3q> points) {
   return result;
 }
 
-bool WithinFilter(Points points) {
-  return std::all_of(points.begin(), points.end(),
-                     [](const Vector3d& p) { return p.cwiseAbs().maxCoeff() <= kLargest; });
-}
-
 }  // namespace
 
 HullDistance SquaredConvexDistance(Points a, Points b) {
-  HullPair hulls = MakePair(a, b);
-  return Decide(&hulls);
+  CheckSizes(a, b);
+  Prepared prepared(a, b);
+  CheckFinite(prepared);
+  return Decide(&prepared.hulls);
 }
 
 std::optional<HullDistance> TrySquaredConvexDistance(Points a, Points b) {
-  HullPair hulls = MakePair(a, b);
-  if (!hulls.filter) return std::nullopt;
-  Simplex simplex = Propose(hulls);
-  return Confirm(&hulls, 0, &simplex);
+  CheckSizes(a, b);
+  Prepared prepared(a, b);
+  CheckFinite(prepared);
+  if (!prepared.hulls.filter) return std::nullopt;
+  Simplex simplex = Propose(prepared.hulls);
+  return Confirm(&prepared.hulls, 0, &simplex);
 }
 
 HullDistance SquaredConvexDistance(std::span<const Vector3q> a, std::span<const Vector3q> b) {
-  RequireRoundToNearest();
-  Require(!a.empty() && !b.empty(), "the distance of an empty hull is not defined");
+  CheckSizes(a, b);
   const exact::internal::IntegerSets integers = exact::internal::ToIntegers(a, b);
   const std::vector<Vector3d> near_a = NearestDoubles(a), near_b = NearestDoubles(b);
-  HullPair hulls;
-  hulls.a = near_a;
-  hulls.b = near_b;
-  hulls.integers = &integers;
-  hulls.filter = WithinFilter(near_a) && WithinFilter(near_b);
-  if (hulls.filter) {
-    // Two points within u M (1 + u) (or 2^-1075) of the real ones and a rounded difference: within
-    // u (|d| + 2 M (1 + 3 u)), so that 3 M, or 2^-900 if that is more, covers it.
-    hulls.blur = std::max(0x1p-900, 3 * Checked(near_a, near_b));
-  }
-  return Decide(&hulls);
+  Prepared prepared(near_a, near_b);
+  prepared.hulls.integers = &integers;
+  // Two points within u M (1 + u) (or 2^-1075) of the real ones and a rounded difference: within
+  // u (|d| + 2 M (1 + 3 u)), so that 3 M, or 2^-900 if that is more, covers it.
+  if (prepared.hulls.filter) prepared.hulls.blur = std::max(0x1p-900, 3 * prepared.Largest());
+  return Decide(&prepared.hulls);
 }
 
 exact::ConvexDistance ClosestPoints(std::span<const Vector3q> a, std::span<const Vector3q> b,

@@ -62,19 +62,19 @@ int FilteredSign(const Bounded& p, const Bounded& q) {
 Face::Face(HullPair* hulls, const Simplex& simplex) : hulls_(hulls), simplex_(simplex) {
   for (int k = 0; k < simplex.size; ++k) {
     const auto& [i, j] = simplex.corners[k];
-    w_[k] = Difference(hulls->a[i], hulls->b[j], hulls->blur);
+    w_[k] = Difference(hulls->a.points[i], hulls->b.points[j], hulls->blur);
   }
   const auto& [i0, j0] = simplex.corners[0];
   for (int k = 1; k < simplex.size; ++k) {
     const auto& [i, j] = simplex.corners[k];
     // Differences within one set keep an edge shared by both corners exact, near contact too.
     if (j == j0) {
-      e_[k - 1] = Difference(hulls->a[i], hulls->a[i0], hulls->blur);
+      e_[k - 1] = Difference(hulls->a.points[i], hulls->a.points[i0], hulls->blur);
     } else if (i == i0) {
-      e_[k - 1] = Difference(hulls->b[j0], hulls->b[j], hulls->blur);
+      e_[k - 1] = Difference(hulls->b.points[j0], hulls->b.points[j], hulls->blur);
     } else {
-      e_[k - 1] = Minus(Difference(hulls->a[i], hulls->a[i0], hulls->blur),
-                        Difference(hulls->b[j], hulls->b[j0], hulls->blur));
+      e_[k - 1] = Minus(Difference(hulls->a.points[i], hulls->a.points[i0], hulls->blur),
+                        Difference(hulls->b.points[j], hulls->b.points[j0], hulls->blur));
     }
   }
 }
@@ -169,28 +169,40 @@ void Face::MarkKnownTies(std::array<bool, 4>* of_a, std::array<bool, 4>* of_b) c
   }
 }
 
+// The points of one set that may lie beyond the plane through the first corner: all but those that
+// a bound for the whole set, kFactor times its largest magnitude, keeps inside it.
+void Face::CollectNear(const PointSet& set, const Bounded& n, const Vector3d& origin,
+                       std::vector<int>* near) const {
+  const Vector3d farness = set.lanes->Farness(origin).array() + hulls_->blur;
+  const double bound = kFactor * n.magnitude.dot(farness) * (1 + 8 * kUnit) + kUnderflow;
+  if (hulls_->filter) {
+    set.lanes->CollectWithin(origin, n.value, bound, near);
+  } else {
+    for (int i = 0; i < set.lanes->size(); ++i) near->push_back(i);
+  }
+}
+
 // Index of a point of A with n.(a_i - a_i0) < 0, or of B with n.(b_j - b_j0) > 0, the farthest one
 // as far as doubles can tell; -1 where there is none.
 int Face::Beyond(bool of_b, const std::array<bool, 4>& known) {
-  const auto& points = of_b ? hulls_->b : hulls_->a;
+  const PointSet& set = of_b ? hulls_->b : hulls_->a;
   const auto index_of = [&](int k) { return of_b ? simplex_.corners[k].j : simplex_.corners[k].i; };
-  const Vector3d origin = points[index_of(0)];
+  const Vector3d& origin = set.points[index_of(0)];
   const Bounded n = of_b ? Negated(n_) : n_;
+  std::vector<int> near, ties;
+  CollectNear(set, n, origin, &near);
   int beyond = -1;
   double lowest = 0;
-  std::vector<int> ties;
-  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
-    const Bounded d = Difference(points[i], origin, hulls_->blur);
-    const double value = n.value.dot(d.value);
-    const double bound = kFactor * n.magnitude.dot(d.magnitude) + kUnderflow;
-    if (value > bound && hulls_->filter) continue;
-    if (value < -bound && hulls_->filter) {
-      if (value < lowest) beyond = i, lowest = value;
-      continue;
-    }
+  for (const int i : near) {
     bool settled = false;
     for (int k = 0; k < simplex_.size; ++k) settled |= known[k] && index_of(k) == i;
-    if (!settled) ties.push_back(i);
+    if (settled) continue;
+    const Bounded d = Difference(set.points[i], origin, hulls_->blur);
+    const int sign = hulls_->filter ? FilteredSign(n, d) : 0;
+    if (sign == 0) ties.push_back(i);
+    if (sign >= 0) continue;
+    const double value = n.value.dot(d.value);
+    if (value < lowest) beyond = i, lowest = value;
   }
   if (beyond >= 0) return beyond;
   for (const int i : ties) {

@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
-#include <span>
+#include <vector>
 
 #include "cguide/exact/distance_internal.h"
-#include "cguide/numeric/convex_internal.h"
+#include "cguide/numeric/gjk_internal.h"
 
 namespace cguide::numeric {
 
@@ -14,8 +14,8 @@ using exact::internal::IntegerPoint;
 
 /** Two sets of points for signs that are filtered in doubles and settled in integers. */
 struct HullPair {
-  std::span<const Eigen::Vector3d> a;
-  std::span<const Eigen::Vector3d> b;
+  PointSet a;
+  PointSet b;
   /** The points themselves where the doubles are only near them, else null. */
   const exact::internal::IntegerSets* integers = nullptr;
   /** What the magnitude of a difference is raised by so that its error is below u times that: 0
@@ -108,6 +108,8 @@ class Face {
   bool WeightsNonNegative();
   bool HoldsOrigin();
   void MarkKnownTies(std::array<bool, 4>* of_a, std::array<bool, 4>* of_b) const;
+  void CollectNear(const PointSet& set, const Bounded& n, const Eigen::Vector3d& origin,
+                   std::vector<int>* near) const;
   int Beyond(bool of_b, const std::array<bool, 4>& known);
 
   HullPair* hulls_;

@@ -116,20 +116,6 @@ void Reduce(const Candidate& c, GjkResult* r) {
   std::copy(kept, kept + c.size, r->simplex);
 }
 
-// Index of the point farthest along n.
-int FarthestPoint(const Vector3d* points, int count, const Vector3d& n) {
-  int best = 0;
-  double value = -INFINITY;
-  for (int i = 0; i < count; ++i) {
-    const double dot = n.dot(points[i]);
-    if (dot > value) {
-      value = dot;
-      best = i;
-    }
-  }
-  return best;
-}
-
 template <typename Support>
 void Iterate(const Support& support, const Vector3d& v0, double tiny, double enough, GjkResult* r) {
   r->v = v0.squaredNorm() > 0 ? v0 : Vector3d::UnitX();
@@ -179,13 +165,12 @@ void Gjk(const Convex& a, const Convex& b, const Vector3d& v0, double enough, Gj
   Iterate(support, v0, 4 * kUnit * (offset.norm() + a.reach + b.reach), enough, r);
 }
 
-void Gjk(std::span<const Vector3d> a, std::span<const Vector3d> b, const Vector3d& v0,
-         double enough, GjkResult* r) {
+void Gjk(const PointSet& a, const PointSet& b, const Vector3d& v0, double enough, GjkResult* r) {
   const auto support = [&](const Vector3d& v, DifferencePoint* p) {
-    p->i = FarthestPoint(a.data(), static_cast<int>(a.size()), -v);
-    p->j = FarthestPoint(b.data(), static_cast<int>(b.size()), v);
-    p->a = a[p->i];
-    p->b = b[p->j];
+    p->i = a.lanes->Farthest(-v);
+    p->j = b.lanes->Farthest(v);
+    p->a = a.points[p->i];
+    p->b = b.points[p->j];
     p->w = p->a - p->b;
   };
   Iterate(support, v0, 0, enough, r);

@@ -34,8 +34,14 @@ struct GjkResult {
 void Gjk(const Convex& a, const Convex& b, const Eigen::Vector3d& v0, double enough,
          GjkResult* result);
 
+/** Points together with their lanes; a view. */
+struct PointSet {
+  std::span<const Eigen::Vector3d> points;
+  const PointLanes* lanes = nullptr;
+};
+
 /** The same for the hulls of two non-empty sets of points. */
-void Gjk(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b,
-         const Eigen::Vector3d& v0, double enough, GjkResult* result);
+void Gjk(const PointSet& a, const PointSet& b, const Eigen::Vector3d& v0, double enough,
+         GjkResult* result);
 
 }  // namespace cguide::numeric

@@ -56,7 +56,7 @@ IntegerPoint IntegerDifference(const HullPair& hulls, bool of_b, int p, int q) {
     const auto& points = of_b ? hulls.integers->b : hulls.integers->a;
     return Minus(points[p], points[q]);
   }
-  const auto& points = of_b ? hulls.b : hulls.a;
+  const auto& points = of_b ? hulls.b.points : hulls.a.points;
   const int lowest = LowestExponent(points[p], LowestExponent(points[q], 1024));
   return Minus(Shifted(points[p], lowest), Shifted(points[q], lowest));
 }
@@ -66,15 +66,16 @@ IntegerFace MakeIntegerFace(const HullPair& hulls, const Simplex& simplex) {
   face.size = simplex.size;
   int lowest = 1024;
   for (int k = 0; k < face.size && !hulls.integers; ++k) {
-    lowest = LowestExponent(hulls.a[simplex.corners[k].i], lowest);
-    lowest = LowestExponent(hulls.b[simplex.corners[k].j], lowest);
+    lowest = LowestExponent(hulls.a.points[simplex.corners[k].i], lowest);
+    lowest = LowestExponent(hulls.b.points[simplex.corners[k].j], lowest);
   }
   face.exponent = hulls.integers ? 0 : lowest;
   if (hulls.integers) face.scale = hulls.integers->scale;
   for (int k = 0; k < face.size; ++k) {
     const auto& [i, j] = simplex.corners[k];
-    face.w[k] = hulls.integers ? Minus(hulls.integers->a[i], hulls.integers->b[j])
-                               : Minus(Shifted(hulls.a[i], lowest), Shifted(hulls.b[j], lowest));
+    face.w[k] = hulls.integers
+                    ? Minus(hulls.integers->a[i], hulls.integers->b[j])
+                    : Minus(Shifted(hulls.a.points[i], lowest), Shifted(hulls.b.points[j], lowest));
   }
   if (face.size == 4) return face;
   if (face.size == 1) {

@@ -119,6 +119,7 @@ numeric::Convex PlacedBox(const test::BoxCase& box) {
 struct EnclosurePair {
   ConvexPair points;
   Points relative[2];
+  numeric::PointLanes lanes[2];
   numeric::Convex shape[2];
   peers::FclObject fcl[2];
   peers::BulletShape bullet[2];
@@ -151,7 +152,10 @@ long EnclosureRow(std::FILE* out, const char* name, const std::vector<ConvexPair
   for (const ConvexPair& pair : pairs) {
     EnclosurePair e = Prepare(pair);
     for (int side = 0; side < 2; ++side) {
-      if (!pair.boxes) e.shape[side].points = e.relative[side].data();
+      if (pair.boxes) continue;
+      e.lanes[side] = numeric::PointLanes(e.relative[side]);
+      e.shape[side].points = e.relative[side].data();
+      e.shape[side].lanes = &e.lanes[side];
     }
     const Rational truth = SquaredTruth(pair);
     numeric::DirectedClearance placed;
