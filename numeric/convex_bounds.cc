@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "cguide/exact/core/error.h"
-#include "cguide/numeric/convex_distance.h"
-#include "cguide/numeric/difference_face_internal.h"
+#include "cguide/numeric/convex_distance_internal.h"
 #include "cguide/numeric/fp_guard.h"
 #include "cguide/numeric/gjk_internal.h"
 
@@ -16,19 +15,21 @@ using Points = std::span<const Vector3d>;
 
 constexpr double kShort = 1e-140;  // Below it squares of lengths near underflow.
 
-// A set and what the bounds ask about it.
-struct Measured {
-  PointLanes lanes;
-  PointSet set;
+// The least computed n.(p - origin).
+double LeastFrom(const PointSet& set, const Vector3d& origin, const Vector3d& n) {
+  if (set.lanes) return set.lanes->LeastFrom(origin, n);
+  double least = INFINITY;
+  for (const Vector3d& p : set.points) least = std::min(least, n.dot(p - origin));
+  return least;
+}
 
-  explicit Measured(Points points) : lanes(points), set{points, &lanes} {}
-  Measured(const Measured&) = delete;
-  Measured& operator=(const Measured&) = delete;
-
-  double Largest() const {
-    return std::max(lanes.lower().cwiseAbs().maxCoeff(), lanes.upper().cwiseAbs().maxCoeff());
-  }
-};
+// The greatest |p - origin|, component by component.
+Vector3d Farness(const PointSet& set, const Vector3d& origin) {
+  if (set.lanes) return set.lanes->Farness(origin);
+  Vector3d farness = Vector3d::Zero();
+  for (const Vector3d& p : set.points) farness = farness.cwiseMax((p - origin).cwiseAbs());
+  return farness;
+}
 
 // Weak duality: for any n, d |n| >= min_i n.a_i - max_j n.b_j
 //   = n.w + min_i n.(a_i - a_0) - max_j n.(b_j - b_0),  w = a_0 - b_0 a corner of the proposal.
@@ -37,12 +38,10 @@ struct Measured {
 // within 2.1 u of the sum of their magnitudes; underflow costs each of the products 2^-1075. 8 u
 // and 2^-1000 cover it, the rounding of m included, with m of a set taken at the far sides of its
 // box. n is divided by its computed length, so |n| = 1 within 8 u, and d >= value / |n|.
-double LowerBound(const Measured& a, const Measured& b, const DifferencePoint& corner,
+double LowerBound(const PointSet& a, const PointSet& b, const DifferencePoint& corner,
                   const Vector3d& n) {
-  const double value =
-      n.dot(corner.w) + a.lanes.LeastFrom(corner.a, n) + b.lanes.LeastFrom(corner.b, -n);
-  const Vector3d farness =
-      corner.w.cwiseAbs() + a.lanes.Farness(corner.a) + b.lanes.Farness(corner.b);
+  const double value = n.dot(corner.w) + LeastFrom(a, corner.a, n) + LeastFrom(b, corner.b, -n);
+  const Vector3d farness = corner.w.cwiseAbs() + Farness(a, corner.a) + Farness(b, corner.b);
   const double error = 8 * kUnit * n.cwiseAbs().dot(farness) + 0x1p-1000;
   return std::max(0.0, (value - error) * (1 - 16 * kUnit));
 }
@@ -76,26 +75,24 @@ double UpperBound(const GjkResult& gjk, double length) {
   return length * (1 + 8 * kUnit) + 24 * kUnit * largest + 0x1p-500;
 }
 
-// The iteration may stop as soon as the lower bound exceeds `enough`.
+// A set of doubles and its lanes.
+struct Measured {
+  PointLanes lanes;
+  PointSet set;
+
+  explicit Measured(Points points) : lanes(points), set{points, &lanes} {}
+  Measured(const Measured&) = delete;
+  Measured& operator=(const Measured&) = delete;
+
+  double Largest() const {
+    return std::max(lanes.lower().cwiseAbs().maxCoeff(), lanes.upper().cwiseAbs().maxCoeff());
+  }
+};
+
 DistanceBounds Bounds(const Measured& a, const Measured& b, double enough) {
-  DistanceBounds bounds{0, INFINITY};
-  if (std::max(a.Largest(), b.Largest()) > kLargest) return bounds;
+  if (std::max(a.Largest(), b.Largest()) > kLargest) return {0, INFINITY};
   GjkResult gjk;
-  const Vector3d &p = a.set.points[0], &q = b.set.points[0];
-  Gjk(a.set, b.set, p - q, enough, &gjk);
-  if (gjk.size == 0) {
-    gjk.size = 1;
-    gjk.simplex[0] = {p - q, p, q, 0, 0};
-    gjk.v = gjk.simplex[0].w;
-  }
-  const double length = gjk.v.norm();
-  bounds.hi = UpperBound(gjk, length);
-  if (gjk.overlap) return bounds;
-  if (length > kShort) bounds.lo = LowerBound(a, b, gjk.simplex[0], gjk.v / length);
-  if (!(bounds.hi - bounds.lo <= 1e-3 * bounds.hi)) {
-    bounds.lo = std::max(bounds.lo, LowerBound(a, b, gjk.simplex[0], NormalOf(gjk)));
-  }
-  return bounds;
+  return BoundSets(a.set, b.set, enough, &gjk);
 }
 
 void CheckSets(Points a, Points b) {
@@ -112,6 +109,26 @@ void CheckRadius(double radius) {
 }
 
 }  // namespace
+
+DistanceBounds BoundSets(const PointSet& a, const PointSet& b, double enough, GjkResult* gjk) {
+  DistanceBounds bounds{0, INFINITY};
+  const Vector3d &p = a.points[0], &q = b.points[0];
+  Gjk(a, b, p - q, enough, gjk);
+  if (gjk->size == 0) {
+    gjk->size = 1;
+    gjk->simplex[0] = {p - q, p, q, 0, 0};
+    gjk->v = gjk->simplex[0].w;
+  }
+  const double length = gjk->v.norm();
+  bounds.hi = UpperBound(*gjk, length);
+  if (gjk->overlap) return bounds;
+  if (length > kShort) bounds.lo = LowerBound(a, b, gjk->simplex[0], gjk->v / length);
+  if (gjk->separated && bounds.lo > enough) return bounds;
+  if (!(bounds.hi - bounds.lo <= 1e-3 * bounds.hi)) {
+    bounds.lo = std::max(bounds.lo, LowerBound(a, b, gjk->simplex[0], NormalOf(*gjk)));
+  }
+  return bounds;
+}
 
 DistanceBounds BoundConvexDistance(Points a, Points b) {
   CheckSets(a, b);

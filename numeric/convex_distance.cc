@@ -6,9 +6,8 @@
 
 #include "cguide/exact/core/error.h"
 #include "cguide/exact/linear_algebra.h"
-#include "cguide/numeric/difference_face_internal.h"
+#include "cguide/numeric/convex_distance_internal.h"
 #include "cguide/numeric/fp_guard.h"
-#include "cguide/numeric/gjk_internal.h"
 
 namespace cguide::numeric {
 namespace {
@@ -47,19 +46,25 @@ void CheckFinite(const Prepared& prepared) {
 }
 
 Simplex Propose(const HullPair& hulls) {
-  Simplex simplex;
-  if (hulls.filter) {
-    GjkResult gjk;
-    Gjk(hulls.a, hulls.b, hulls.a.points[0] - hulls.b.points[0], INFINITY, &gjk);
-    for (int k = 0; k < gjk.size; ++k) simplex.Push({gjk.simplex[k].i, gjk.simplex[k].j});
-  }
-  if (simplex.size == 0) simplex.Push({0, 0});
-  return simplex;
+  GjkResult gjk;
+  if (hulls.filter) Gjk(hulls.a, hulls.b, hulls.a.points[0] - hulls.b.points[0], INFINITY, &gjk);
+  return SimplexOf(gjk);
 }
 
-HullDistance Answer(const HullPair& hulls, const Simplex& simplex, Face* face, int rounds) {
+// Whether the simplex attains the distance; else it becomes what to go on with: itself where it
+// does not hold its nearest point, else with a corner nearer to the origin.
+bool Confirms(HullPair* hulls, Simplex* simplex) {
+  Face face(hulls, *simplex);
+  if (!face.HoldsNearest()) return false;
+  if (face.MeetsOrigin()) return true;
+  const std::optional<Corner> corner = face.Violator();
+  if (corner) simplex->Push(*corner);
+  return !corner;
+}
+
+HullDistance Answer(const HullPair& hulls, const Simplex& simplex, int rounds) {
   HullDistance result;
-  result.squared = face->MeetsOrigin() ? Rational(0) : face->Squared();
+  result.squared = SquaredHeight(MakeIntegerFace(hulls, simplex));
   result.size = simplex.size;
   for (int k = 0; k < simplex.size; ++k) {
     result.corners[k] = {simplex.corners[k].i, simplex.corners[k].j};
@@ -69,28 +74,10 @@ HullDistance Answer(const HullPair& hulls, const Simplex& simplex, Face* face, i
   return result;
 }
 
-// Confirms the simplex, or reports what to go on with: itself where it does not hold its nearest
-// point, else itself with a corner nearer to the origin.
-std::optional<HullDistance> Confirm(HullPair* hulls, int rounds, Simplex* simplex) {
-  Face face(hulls, *simplex);
-  if (!face.HoldsNearest()) return std::nullopt;
-  if (!face.MeetsOrigin()) {
-    if (const std::optional<Corner> corner = face.Violator()) {
-      simplex->Push(*corner);
-      return std::nullopt;
-    }
-  }
-  return Answer(*hulls, *simplex, &face, rounds);
-}
-
-// Each round ends with the point of a simplex nearest to the origin, strictly nearer than that of
-// the round before (after the first round): there are finitely many simplices, so it ends.
 HullDistance Decide(HullPair* hulls) {
-  Simplex simplex = Propose(*hulls);
-  for (int rounds = 0;; ++rounds) {
-    if (std::optional<HullDistance> result = Confirm(hulls, rounds, &simplex)) return *result;
-    simplex = ReduceExactly(*hulls, simplex);
-  }
+  int rounds = 0;
+  const Simplex simplex = DecideSimplex(hulls, Propose(*hulls), &rounds);
+  return Answer(*hulls, simplex, rounds);
 }
 
 std::vector<Vector3d> NearestDoubles(std::span<const Vector3q> points) {
@@ -103,6 +90,23 @@ std::vector<Vector3d> NearestDoubles(std::span<const Vector3q> points) {
 }
 
 }  // namespace
+
+Simplex SimplexOf(const GjkResult& gjk) {
+  Simplex simplex;
+  for (int k = 0; k < gjk.size; ++k) simplex.Push({gjk.simplex[k].i, gjk.simplex[k].j});
+  if (simplex.size == 0) simplex.Push({0, 0});
+  return simplex;
+}
+
+// Each round ends with the point of a simplex nearest to the origin, strictly nearer than that of
+// the round before (after the first round): there are finitely many simplices, so it ends.
+Simplex DecideSimplex(HullPair* hulls, Simplex simplex, int* rounds) {
+  while (!Confirms(hulls, &simplex)) {
+    simplex = ReduceExactly(*hulls, simplex);
+    if (rounds) ++*rounds;
+  }
+  return simplex;
+}
 
 HullDistance SquaredConvexDistance(Points a, Points b) {
   CheckSizes(a, b);
@@ -117,7 +121,8 @@ std::optional<HullDistance> TrySquaredConvexDistance(Points a, Points b) {
   CheckFinite(prepared);
   if (!prepared.hulls.filter) return std::nullopt;
   Simplex simplex = Propose(prepared.hulls);
-  return Confirm(&prepared.hulls, 0, &simplex);
+  if (!Confirms(&prepared.hulls, &simplex)) return std::nullopt;
+  return Answer(prepared.hulls, simplex, 0);
 }
 
 HullDistance SquaredConvexDistance(std::span<const Vector3q> a, std::span<const Vector3q> b) {

@@ -165,10 +165,24 @@ void Gjk(const Convex& a, const Convex& b, const Vector3d& v0, double enough, Gj
   Iterate(support, v0, 4 * kUnit * (offset.norm() + a.reach + b.reach), enough, r);
 }
 
+int Farthest(const PointSet& set, const Vector3d& n) {
+  if (set.lanes) return set.lanes->Farthest(n);
+  int best = 0;
+  double value = -INFINITY;
+  for (int i = 0; i < static_cast<int>(set.points.size()); ++i) {
+    const double dot = n.dot(set.points[i]);
+    if (dot > value) {
+      value = dot;
+      best = i;
+    }
+  }
+  return best;
+}
+
 void Gjk(const PointSet& a, const PointSet& b, const Vector3d& v0, double enough, GjkResult* r) {
   const auto support = [&](const Vector3d& v, DifferencePoint* p) {
-    p->i = a.lanes->Farthest(-v);
-    p->j = b.lanes->Farthest(v);
+    p->i = Farthest(a, -v);
+    p->j = Farthest(b, v);
     p->a = a.points[p->i];
     p->b = b.points[p->j];
     p->w = p->a - p->b;

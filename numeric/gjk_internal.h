@@ -34,11 +34,14 @@ struct GjkResult {
 void Gjk(const Convex& a, const Convex& b, const Eigen::Vector3d& v0, double enough,
          GjkResult* result);
 
-/** Points together with their lanes; a view. */
+/** Points, with their lanes where they are worth having; a view. */
 struct PointSet {
   std::span<const Eigen::Vector3d> points;
   const PointLanes* lanes = nullptr;
 };
+
+/** Index of a point with the greatest computed n.p. */
+int Farthest(const PointSet& set, const Eigen::Vector3d& n);
 
 /** The same for the hulls of two non-empty sets of points. */
 void Gjk(const PointSet& a, const PointSet& b, const Eigen::Vector3d& v0, double enough,

@@ -1,0 +1,318 @@
+#include "cguide/numeric/triangle_distance.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "cguide/exact/core/error.h"
+#include "cguide/numeric/convex_distance_internal.h"
+#include "cguide/numeric/fp_guard.h"
+#include "cguide/numeric/mesh_internal.h"
+
+namespace cguide::numeric {
+
+using Eigen::Vector3d;
+
+/** Triangles in the order of the tree's leaves. */
+struct TriangleTree::Data {
+  std::vector<MeshNode> nodes;
+  std::vector<std::array<Vector3d, 3>> corners;
+  std::vector<MeshNode> boxes;                 ///< of the triangles
+  std::vector<std::array<int, 3>> vertex_ids;  ///< equal for equal points
+  std::vector<int> index;                      ///< in the order given
+  double largest = 0;
+};
+
+namespace {
+
+std::vector<int> IdsOfEqualPoints(const std::vector<Vector3d>& points) {
+  std::vector<int> order(points.size()), ids(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto less = [&points](int i, int j) {
+    return std::lexicographical_compare(points[i].data(), points[i].data() + 3, points[j].data(),
+                                        points[j].data() + 3);
+  };
+  std::sort(order.begin(), order.end(), less);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool equal = k > 0 && !less(order[k - 1], order[k]);
+    ids[order[k]] = equal ? ids[order[k - 1]] : order[k];
+  }
+  return ids;
+}
+
+// Bounds the squared gap of two boxes from below: each difference, square and sum is within u, in
+// all below 8 u; what underflows is below 2^-1000.
+bool Farther(const MeshNode& a, const MeshNode& b, double limit) {
+  const Vector3d gap = (a.lower - b.upper).cwiseMax(b.lower - a.upper).cwiseMax(0.0);
+  return gap.squaredNorm() > limit * limit * (1 + 32 * kUnit) + 0x1p-1000;
+}
+
+double SquaredGap(const MeshNode& a, const MeshNode& b) {
+  return (a.lower - b.upper).cwiseMax(b.lower - a.upper).cwiseMax(0.0).squaredNorm();
+}
+
+// One side of the search: a tree, or a hull that is one item in one box.
+struct Side {
+  const TriangleTree::Data* tree = nullptr;
+  PointSet hull;
+  MeshNode hull_box;
+
+  const MeshNode& node(int k) const { return tree ? tree->nodes[k] : hull_box; }
+  const MeshNode& box(int item) const { return tree ? tree->boxes[item] : hull_box; }
+  PointSet item(int k) const { return tree ? PointSet{tree->corners[k], nullptr} : hull; }
+};
+
+// A set of few points for the filter, which wants lanes.
+struct Item {
+  PointSet set;
+  PointLanes lanes;
+
+  explicit Item(const PointSet& from) : set(from) {
+    if (set.lanes) return;
+    lanes = PointLanes(set.points);
+    set.lanes = &lanes;
+  }
+};
+
+struct Candidate {
+  int a = 0;
+  int b = 0;
+  double lo = 0;
+  Simplex simplex;
+};
+
+class Search {
+ public:
+  Search(const Side& a, const Side& b) : a_(a), b_(b) {}
+
+  TriangleTreeDistance Run() {
+    Walk();
+    Settle();
+    return std::move(result_);
+  }
+
+ private:
+  void Walk();
+  void VisitLeaves(const MeshNode& a, const MeshNode& b);
+  void VisitItems(int a, int b);
+  void Settle();
+  Simplex Decide(const Candidate& candidate) const;
+  Rational Squared(const Candidate& candidate, const Simplex& simplex) const;
+  std::vector<int> FeatureOf(const Candidate& candidate, const Simplex& simplex) const;
+  void Accept(const Candidate& candidate, const Simplex& simplex, const Rational& squared);
+
+  const Side& a_;
+  const Side& b_;
+  double upper_ = INFINITY;  // The distance is at most this.
+  bool meet_ = false;
+  std::vector<Candidate> candidates_;
+  TriangleTreeDistance result_;
+};
+
+// Depth first, the nearer pair of boxes first. The depth of a tree is at most log2(n) + 1 and a
+// step leaves at most one more pair than it takes.
+void Search::Walk() {
+  std::vector<std::pair<int, int>> stack{{0, 0}};
+  while (!stack.empty() && !meet_) {
+    const auto [i, j] = stack.back();
+    stack.pop_back();
+    const MeshNode &a = a_.node(i), &b = b_.node(j);
+    if (Farther(a, b, upper_)) continue;
+    if (a.count > 0 && b.count > 0) {
+      VisitLeaves(a, b);
+      continue;
+    }
+    const bool split_a = b.count > 0 || (a.count == 0 && (a.upper - a.lower).squaredNorm() >
+                                                             (b.upper - b.lower).squaredNorm());
+    std::pair<int, int> near{split_a ? a.first : i, split_a ? j : b.first};
+    std::pair<int, int> far{split_a ? a.first + 1 : i, split_a ? j : b.first + 1};
+    if (SquaredGap(a_.node(far.first), b_.node(far.second)) <
+        SquaredGap(a_.node(near.first), b_.node(near.second))) {
+      std::swap(near, far);
+    }
+    stack.push_back(far);
+    stack.push_back(near);
+  }
+}
+
+void Search::VisitLeaves(const MeshNode& a, const MeshNode& b) {
+  for (int i = a.first; i < a.first + a.count; ++i) {
+    if (Farther(a_.box(i), b, upper_)) continue;
+    for (int j = b.first; j < b.first + b.count; ++j) {
+      if (meet_) return;
+      if (!Farther(a_.box(i), b_.box(j), upper_)) VisitItems(i, j);
+    }
+  }
+}
+
+void Search::VisitItems(int a, int b) {
+  ++result_.pairs;
+  GjkResult gjk;
+  const DistanceBounds bounds = BoundSets(a_.item(a), b_.item(b), upper_, &gjk);
+  if (bounds.lo > upper_) return;
+  upper_ = std::min(upper_, bounds.hi);
+  candidates_.push_back({a, b, bounds.lo, SimplexOf(gjk)});
+  if (!gjk.overlap) return;
+  // Where sets meet all over, the first proof ends the search.
+  const Simplex simplex = Decide(candidates_.back());
+  if (Squared(candidates_.back(), simplex) != 0) return;
+  meet_ = true;
+  Accept(candidates_.back(), simplex, 0);
+}
+
+Simplex Search::Decide(const Candidate& candidate) const {
+  const Item a(a_.item(candidate.a)), b(b_.item(candidate.b));
+  HullPair hulls;
+  hulls.a = a.set;
+  hulls.b = b.set;
+  return DecideSimplex(&hulls, candidate.simplex);
+}
+
+Rational Search::Squared(const Candidate& candidate, const Simplex& simplex) const {
+  HullPair hulls;
+  hulls.a = a_.item(candidate.a);
+  hulls.b = b_.item(candidate.b);
+  return SquaredHeight(MakeIntegerFace(hulls, simplex));
+}
+
+// What the simplex is made of, as points of the two sets: how many of A, those, those of B.
+std::vector<int> Search::FeatureOf(const Candidate& candidate, const Simplex& simplex) const {
+  std::vector<int> of_a, of_b;
+  for (int k = 0; k < simplex.size; ++k) {
+    const auto& [i, j] = simplex.corners[k];
+    of_a.push_back(a_.tree ? a_.tree->vertex_ids[candidate.a][i] : i);
+    of_b.push_back(b_.tree ? b_.tree->vertex_ids[candidate.b][j] : j);
+  }
+  for (std::vector<int>* ids : {&of_a, &of_b}) {
+    std::sort(ids->begin(), ids->end());
+    ids->erase(std::unique(ids->begin(), ids->end()), ids->end());
+  }
+  of_a.insert(of_a.begin(), static_cast<int>(of_a.size()));
+  of_a.insert(of_a.end(), of_b.begin(), of_b.end());
+  return of_a;
+}
+
+void Search::Accept(const Candidate& candidate, const Simplex& simplex, const Rational& squared) {
+  const PointSet a = a_.item(candidate.a), b = b_.item(candidate.b);
+  HullDistance distance;
+  distance.size = simplex.size;
+  std::vector<Vector3q> p, q;
+  for (int k = 0; k < simplex.size; ++k) {
+    p.push_back(Lift(a.points[simplex.corners[k].i]));
+    q.push_back(Lift(b.points[simplex.corners[k].j]));
+    distance.corners[k] = {k, k};
+  }
+  exact::ConvexDistance closest = ClosestPoints(p, q, distance);
+  result_.squared = squared;
+  result_.a = std::move(closest.a);
+  result_.b = std::move(closest.b);
+  result_.index_a = a_.tree ? a_.tree->index[candidate.a] : -1;
+  result_.index_b = b_.tree ? b_.tree->index[candidate.b] : -1;
+}
+
+// The distance of two items is that of the hulls of the features that attain it: where two pairs
+// have the same features, they have the same distance.
+void Search::Settle() {
+  if (meet_) return;
+  std::map<std::vector<int>, bool> seen;
+  const Candidate* best = nullptr;
+  Simplex best_simplex;
+  Rational least;
+  for (const Candidate& candidate : candidates_) {
+    if (candidate.lo > upper_) continue;
+    ++result_.candidates;
+    const Simplex simplex = Decide(candidate);
+    if (!seen.try_emplace(FeatureOf(candidate, simplex), true).second) continue;
+    ++result_.features;
+    const Rational squared = Squared(candidate, simplex);
+    if (best && squared >= least) continue;
+    best = &candidate;
+    best_simplex = simplex;
+    least = squared;
+  }
+  Accept(*best, best_simplex, least);
+}
+
+Side SideOf(const TriangleTree& tree) {
+  Side side;
+  side.tree = &tree.data();
+  return side;
+}
+
+exact::TriangleSet ExactSet(const TriangleTree& tree) {
+  exact::TriangleSet set;
+  const TriangleTree::Data& data = tree.data();
+  set.triangles.resize(data.corners.size());
+  set.bounds.resize(data.corners.size());
+  for (std::size_t k = 0; k < data.corners.size(); ++k) {
+    const auto& t = data.corners[k];
+    const int index = data.index[k];
+    set.triangles[index] = {Lift(t[0]), Lift(t[1]), Lift(t[2])};
+    set.bounds[index] = exact::BoundsOf(set.triangles[index]);
+  }
+  return set;
+}
+
+}  // namespace
+
+TriangleTree::TriangleTree(const std::vector<Vector3d>& vertices,
+                           const std::vector<std::array<int, 3>>& triangles) {
+  Require(!triangles.empty(), "an empty triangle set has no distance");
+  Mesh mesh;
+  for (const auto& t : triangles) {
+    for (const int i : t) {
+      Require(i >= 0 && i < static_cast<int>(vertices.size()),
+              "a triangle's index is out of range");
+      Require(vertices[i].allFinite(), "a corner is not finite");
+    }
+  }
+  mesh.vertices = vertices;
+  mesh.triangles = triangles;
+  BuildTree(&mesh);
+  const std::vector<int> ids = IdsOfEqualPoints(vertices);
+  auto data = std::make_shared<Data>();
+  for (const int t : mesh.order) {
+    const auto& [i, j, k] = triangles[t];
+    data->index.push_back(t);
+    data->vertex_ids.push_back({ids[i], ids[j], ids[k]});
+    const auto& c = data->corners.emplace_back(std::array{vertices[i], vertices[j], vertices[k]});
+    MeshNode& box = data->boxes.emplace_back();
+    box.lower = c[0].cwiseMin(c[1]).cwiseMin(c[2]);
+    box.upper = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
+    data->largest =
+        std::max({data->largest, box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff()});
+  }
+  data->nodes = std::move(mesh.nodes);
+  data_ = std::move(data);
+}
+
+TriangleTreeDistance SquaredTriangleDistance(const TriangleTree& a, const TriangleTree& b) {
+  RequireRoundToNearest();
+  if (a.data().largest > kLargest || b.data().largest > kLargest) {
+    return {exact::SquaredTriangleDistance(ExactSet(a), ExactSet(b))};
+  }
+  const Side side_a = SideOf(a), side_b = SideOf(b);
+  return Search(side_a, side_b).Run();
+}
+
+TriangleTreeDistance SquaredTriangleDistance(std::span<const Vector3d> hull,
+                                             const TriangleTree& b) {
+  RequireRoundToNearest();
+  Require(!hull.empty(), "an empty set has no distance");
+  const PointLanes lanes(hull);
+  Require(lanes.is_finite(), "a coordinate is not finite");
+  const double largest =
+      std::max(lanes.lower().cwiseAbs().maxCoeff(), lanes.upper().cwiseAbs().maxCoeff());
+  if (largest > kLargest || b.data().largest > kLargest) {
+    std::vector<Vector3q> points;
+    for (const Vector3d& p : hull) points.push_back(Lift(p));
+    return {exact::SquaredTriangleDistance(points, ExactSet(b))};
+  }
+  Side side;
+  side.hull = {hull, &lanes};
+  side.hull_box = {lanes.lower(), lanes.upper(), 0, 1};
+  const Side side_b = SideOf(b);
+  return Search(side, side_b).Run();
+}
+
+}  // namespace cguide::numeric
