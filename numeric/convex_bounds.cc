@@ -1,4 +1,3 @@
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -46,23 +45,6 @@ double LowerBound(const PointSet& a, const PointSet& b, const DifferencePoint& c
   return std::max(0.0, (value - error) * (1 - 16 * kUnit));
 }
 
-// The normal of the simplex, free of the cancellation in v: e_1 x e_2 or e x (w_0 x e), of edges
-// that are differences within one set where corners share the other's point. Unit; zero if the
-// simplex has none. Any direction is a valid bound, so nothing is proven here.
-Vector3d NormalOf(const GjkResult& gjk) {
-  const auto edge = [&gjk](int k) -> Vector3d {
-    const DifferencePoint &p = gjk.simplex[0], &q = gjk.simplex[k];
-    return (q.a - p.a) - (q.b - p.b);
-  };
-  if (gjk.size < 2 || gjk.size > 3) return Vector3d::Zero();
-  const Vector3d e = edge(1);
-  Vector3d n = gjk.size == 3 ? e.cross(edge(2)) : e.cross(gjk.simplex[0].w.cross(e));
-  if (n.dot(gjk.simplex[0].w) < 0) n = -n;
-  const double length = n.norm();
-  if (!(length > kShort)) return Vector3d::Zero();
-  return n / length;
-}
-
 // v = sum weight_k w_k with weights >= 0 that sum to S, |S - 1| <= 8 u, so v / S is a difference of
 // two points of the hulls. The computed v is off by 1.1 u of sum |w_k| weight_k per component for
 // the rounding of w_k, 4.1 u for products and sums, and dividing by S moves it by 8.1 u |v|: in
@@ -75,33 +57,12 @@ double UpperBound(const GjkResult& gjk, double length) {
   return length * (1 + 8 * kUnit) + 24 * kUnit * largest + 0x1p-500;
 }
 
-// A set of doubles and its lanes.
-struct Measured {
-  PointLanes lanes;
-  PointSet set;
-
-  explicit Measured(Points points) : lanes(points), set{points, &lanes} {}
-  Measured(const Measured&) = delete;
-  Measured& operator=(const Measured&) = delete;
-
-  double Largest() const {
-    return std::max(lanes.lower().cwiseAbs().maxCoeff(), lanes.upper().cwiseAbs().maxCoeff());
+DistanceBounds Bounds(const PointSet& a, const PointSet& b, double enough) {
+  if (std::max(LargestCoordinate(*a.lanes), LargestCoordinate(*b.lanes)) > kLargest) {
+    return {0, INFINITY};
   }
-};
-
-DistanceBounds Bounds(const Measured& a, const Measured& b, double enough) {
-  if (std::max(a.Largest(), b.Largest()) > kLargest) return {0, INFINITY};
   GjkResult gjk;
-  return BoundSets(a.set, b.set, enough, &gjk);
-}
-
-void CheckSets(Points a, Points b) {
-  RequireRoundToNearest();
-  Require(!a.empty() && !b.empty(), "the distance of an empty hull is not defined");
-}
-
-void CheckFinite(const Measured& a, const Measured& b) {
-  Require(a.lanes.is_finite() && b.lanes.is_finite(), "a coordinate is not finite");
+  return BoundSets(a, b, enough, &gjk);
 }
 
 void CheckRadius(double radius) {
@@ -125,16 +86,18 @@ DistanceBounds BoundSets(const PointSet& a, const PointSet& b, double enough, Gj
   if (length > kShort) bounds.lo = LowerBound(a, b, gjk->simplex[0], gjk->v / length);
   if (gjk->separated && bounds.lo > enough) return bounds;
   if (!(bounds.hi - bounds.lo <= 1e-3 * bounds.hi)) {
-    bounds.lo = std::max(bounds.lo, LowerBound(a, b, gjk->simplex[0], NormalOf(*gjk)));
+    bounds.lo = std::max(bounds.lo, LowerBound(a, b, gjk->simplex[0], SimplexNormal(*gjk)));
   }
   return bounds;
 }
 
 DistanceBounds BoundConvexDistance(Points a, Points b) {
-  CheckSets(a, b);
-  const Measured p(a), q(b);
-  CheckFinite(p, q);
-  return Bounds(p, q, INFINITY);
+  return Bounds(CheckedLanes(a).set(), CheckedLanes(b).set(), INFINITY);
+}
+
+DistanceBounds BoundConvexDistance(const ConvexPoints& a, const ConvexPoints& b) {
+  RequireRoundToNearest();
+  return Bounds(a.data().set(), b.data().set(), INFINITY);
 }
 
 std::optional<Sign> TryCompareDistance(const RoundedPoints& a, const RoundedPoints& b,
@@ -142,16 +105,14 @@ std::optional<Sign> TryCompareDistance(const RoundedPoints& a, const RoundedPoin
   CheckRadius(a.radius);
   CheckRadius(b.radius);
   Require(std::isfinite(threshold), "the threshold is not finite");
-  CheckSets(a.points, b.points);
-  const Measured p(a.points), q(b.points);
-  CheckFinite(p, q);
+  const CheckedLanes p(a.points), q(b.points);
   // Two additions, each within u of its result.
   const double reach = a.radius + b.radius + threshold;
   const double error = 4 * kUnit * (a.radius + b.radius + std::abs(threshold));
   if (!(error < INFINITY)) return std::nullopt;
   if (reach + error < 0) return Sign::kPositive;
   const auto decide = [&](double enough) -> std::optional<Sign> {
-    const DistanceBounds bounds = Bounds(p, q, enough);
+    const DistanceBounds bounds = Bounds(p.set(), q.set(), enough);
     if (bounds.lo > reach + error) return Sign::kPositive;
     if (bounds.hi < reach - error) return Sign::kNegative;
     return std::nullopt;

@@ -15,34 +15,12 @@ namespace {
 using Eigen::Vector3d;
 using Points = std::span<const Vector3d>;
 
-// Both sets with their lanes, which live here.
-struct Prepared {
-  PointLanes a, b;
+HullPair PairOf(const PointSet& a, const PointSet& b) {
   HullPair hulls;
-
-  Prepared(Points points_a, Points points_b) : a(points_a), b(points_b) {
-    hulls.a = {points_a, &a};
-    hulls.b = {points_b, &b};
-    hulls.filter = Largest() <= kLargest;
-  }
-  Prepared(const Prepared&) = delete;
-  Prepared& operator=(const Prepared&) = delete;
-
-  double Largest() const {
-    if (!a.is_finite() || !b.is_finite()) return INFINITY;
-    return std::max({a.lower().cwiseAbs().maxCoeff(), a.upper().cwiseAbs().maxCoeff(),
-                     b.lower().cwiseAbs().maxCoeff(), b.upper().cwiseAbs().maxCoeff()});
-  }
-};
-
-template <typename Point>
-void CheckSizes(std::span<const Point> a, std::span<const Point> b) {
-  RequireRoundToNearest();
-  Require(!a.empty() && !b.empty(), "the distance of an empty hull is not defined");
-}
-
-void CheckFinite(const Prepared& prepared) {
-  Require(prepared.a.is_finite() && prepared.b.is_finite(), "a coordinate is not finite");
+  hulls.a = a;
+  hulls.b = b;
+  hulls.filter = std::max(LargestCoordinate(*a.lanes), LargestCoordinate(*b.lanes)) <= kLargest;
+  return hulls;
 }
 
 Simplex Propose(const HullPair& hulls) {
@@ -64,7 +42,7 @@ bool Confirms(HullPair* hulls, Simplex* simplex) {
 
 HullDistance Answer(const HullPair& hulls, const Simplex& simplex, int rounds) {
   HullDistance result;
-  result.squared = SquaredHeight(MakeIntegerFace(hulls, simplex));
+  result.squared = SquaredDistance(hulls, simplex);
   result.size = simplex.size;
   for (int k = 0; k < simplex.size; ++k) {
     result.corners[k] = {simplex.corners[k].i, simplex.corners[k].j};
@@ -108,33 +86,57 @@ Simplex DecideSimplex(HullPair* hulls, Simplex simplex, int* rounds) {
   return simplex;
 }
 
+CheckedLanes::CheckedLanes(Points points) {
+  RequireRoundToNearest();
+  Require(!points.empty(), "the distance of an empty hull is not defined");
+  lanes_ = PointLanes(points);
+  Require(lanes_.is_finite(), "a coordinate is not finite");
+  set_ = {points, &lanes_};
+}
+
+ConvexPoints::ConvexPoints(std::vector<Vector3d> points) {
+  Require(!points.empty(), "the distance of an empty hull is not defined");
+  auto data = std::make_shared<Data>();
+  data->lanes = PointLanes(points);
+  Require(data->lanes.is_finite(), "a coordinate is not finite");
+  data->points = std::move(points);
+  data_ = std::move(data);
+}
+
 HullDistance SquaredConvexDistance(Points a, Points b) {
-  CheckSizes(a, b);
-  Prepared prepared(a, b);
-  CheckFinite(prepared);
-  return Decide(&prepared.hulls);
+  const CheckedLanes p(a), q(b);
+  HullPair hulls = PairOf(p.set(), q.set());
+  return Decide(&hulls);
+}
+
+HullDistance SquaredConvexDistance(const ConvexPoints& a, const ConvexPoints& b) {
+  RequireRoundToNearest();
+  HullPair hulls = PairOf(a.data().set(), b.data().set());
+  return Decide(&hulls);
 }
 
 std::optional<HullDistance> TrySquaredConvexDistance(Points a, Points b) {
-  CheckSizes(a, b);
-  Prepared prepared(a, b);
-  CheckFinite(prepared);
-  if (!prepared.hulls.filter) return std::nullopt;
-  Simplex simplex = Propose(prepared.hulls);
-  if (!Confirms(&prepared.hulls, &simplex)) return std::nullopt;
-  return Answer(prepared.hulls, simplex, 0);
+  const CheckedLanes p(a), q(b);
+  HullPair hulls = PairOf(p.set(), q.set());
+  if (!hulls.filter) return std::nullopt;
+  Simplex simplex = Propose(hulls);
+  if (!Confirms(&hulls, &simplex)) return std::nullopt;
+  return Answer(hulls, simplex, 0);
 }
 
 HullDistance SquaredConvexDistance(std::span<const Vector3q> a, std::span<const Vector3q> b) {
-  CheckSizes(a, b);
+  RequireRoundToNearest();
+  Require(!a.empty() && !b.empty(), "the distance of an empty hull is not defined");
   const exact::internal::IntegerSets integers = exact::internal::ToIntegers(a, b);
   const std::vector<Vector3d> near_a = NearestDoubles(a), near_b = NearestDoubles(b);
-  Prepared prepared(near_a, near_b);
-  prepared.hulls.integers = &integers;
+  const PointLanes lanes_a(near_a), lanes_b(near_b);
+  HullPair hulls = PairOf({near_a, &lanes_a}, {near_b, &lanes_b});
+  hulls.integers = &integers;
   // Two points within u M (1 + u) (or 2^-1075) of the real ones and a rounded difference: within
   // u (|d| + 2 M (1 + 3 u)), so that 3 M, or 2^-900 if that is more, covers it.
-  if (prepared.hulls.filter) prepared.hulls.blur = std::max(0x1p-900, 3 * prepared.Largest());
-  return Decide(&prepared.hulls);
+  const double largest = std::max(LargestCoordinate(lanes_a), LargestCoordinate(lanes_b));
+  if (hulls.filter) hulls.blur = std::max(0x1p-900, 3 * largest);
+  return Decide(&hulls);
 }
 
 exact::ConvexDistance ClosestPoints(std::span<const Vector3q> a, std::span<const Vector3q> b,

@@ -2,8 +2,10 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "cguide/exact/convex_distance.h"
 
@@ -36,6 +38,23 @@ struct HullDistance {
 HullDistance SquaredConvexDistance(std::span<const Eigen::Vector3d> a,
                                    std::span<const Eigen::Vector3d> b);
 
+/** Points prepared for many questions (finite, not empty): a copy, and the layout that fast scans
+ want. Immutable; copies share the data. */
+class ConvexPoints {
+ public:
+  /** @throws Error where the set is empty or a coordinate is not finite. */
+  explicit ConvexPoints(std::vector<Eigen::Vector3d> points);
+
+  struct Data;
+  const Data& data() const { return *data_; }
+
+ private:
+  std::shared_ptr<const Data> data_;
+};
+
+/** The same for prepared points. */
+HullDistance SquaredConvexDistance(const ConvexPoints& a, const ConvexPoints& b);
+
 /** Declines where the proposal needs more than confirming. */
 std::optional<HullDistance> TrySquaredConvexDistance(std::span<const Eigen::Vector3d> a,
                                                      std::span<const Eigen::Vector3d> b);
@@ -63,6 +82,9 @@ struct DistanceBounds {
  @throws Error as above. */
 DistanceBounds BoundConvexDistance(std::span<const Eigen::Vector3d> a,
                                    std::span<const Eigen::Vector3d> b);
+
+/** The same for prepared points. */
+DistanceBounds BoundConvexDistance(const ConvexPoints& a, const ConvexPoints& b);
 
 /** hull(points) + ball(radius) in doubles; a view. */
 struct RoundedPoints {

@@ -79,6 +79,9 @@ std::array<mpz_class, 4> IntegerWeights(const IntegerFace& face);
 /** d^2 of the face in lowest terms. */
 Rational SquaredHeight(const IntegerFace& face);
 
+/** d^2 of a simplex that holds its nearest point. */
+Rational SquaredDistance(const HullPair& hulls, const Simplex& simplex);
+
 /** The face of a simplex (any corners) that holds its point nearest to the origin in its relative
  interior. With four corners left, or height 0, the origin is in it. */
 Simplex ReduceExactly(const HullPair& hulls, const Simplex& simplex);
@@ -98,9 +101,6 @@ class Face {
 
   /** A corner w with n.w < n.w_0, if there is one. @pre HoldsNearest() and not MeetsOrigin(). */
   std::optional<Corner> Violator();
-
-  /** d^2. @pre HoldsNearest(). */
-  Rational Squared() { return SquaredHeight(Exact()); }
 
  private:
   const IntegerFace& Exact();

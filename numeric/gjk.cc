@@ -165,6 +165,19 @@ void Gjk(const Convex& a, const Convex& b, const Vector3d& v0, double enough, Gj
   Iterate(support, v0, 4 * kUnit * (offset.norm() + a.reach + b.reach), enough, r);
 }
 
+Vector3d SimplexNormal(const GjkResult& gjk) {
+  const auto edge = [&gjk](int k) -> Vector3d {
+    const DifferencePoint &p = gjk.simplex[0], &q = gjk.simplex[k];
+    return (q.a - p.a) - (q.b - p.b);
+  };
+  if (gjk.size < 2 || gjk.size > 3) return Vector3d::Zero();
+  const Vector3d e = edge(1);
+  Vector3d n = gjk.size == 3 ? e.cross(edge(2)) : e.cross(gjk.simplex[0].w.cross(e));
+  if (n.dot(gjk.simplex[0].w) < 0) n = -n;
+  const double length = n.norm();
+  return length > 1e-140 ? Vector3d(n / length) : Vector3d(Vector3d::Zero());
+}
+
 int Farthest(const PointSet& set, const Vector3d& n) {
   if (set.lanes) return set.lanes->Farthest(n);
   int best = 0;

@@ -34,6 +34,11 @@ struct GjkResult {
 void Gjk(const Convex& a, const Convex& b, const Eigen::Vector3d& v0, double enough,
          GjkResult* result);
 
+/** The unit normal of a simplex of two or three corners towards A, free of the cancellation in v
+ near contact: e_1 x e_2, or e x (w_0 x e), where edges are differences within the two sets. Zero
+ where there is none. A proposal for a direction of separation. */
+Eigen::Vector3d SimplexNormal(const GjkResult& gjk);
+
 /** Points, with their lanes where they are worth having; a view. */
 struct PointSet {
   std::span<const Eigen::Vector3d> points;

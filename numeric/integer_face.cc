@@ -127,6 +127,10 @@ std::array<mpz_class, 4> IntegerWeights(const IntegerFace& face) {
   return weights;
 }
 
+Rational SquaredDistance(const HullPair& hulls, const Simplex& simplex) {
+  return simplex.size == 4 ? Rational(0) : SquaredHeight(MakeIntegerFace(hulls, simplex));
+}
+
 // The powers of two go first: gcd and division are then about fewer bits.
 Rational SquaredHeight(const IntegerFace& face) {
   if (face.size == 4 || face.height == 0) return 0;

@@ -172,7 +172,7 @@ Rational Search::Squared(const Candidate& candidate, const Simplex& simplex) con
   HullPair hulls;
   hulls.a = a_.item(candidate.a);
   hulls.b = b_.item(candidate.b);
-  return SquaredHeight(MakeIntegerFace(hulls, simplex));
+  return SquaredDistance(hulls, simplex);
 }
 
 // What the simplex is made of, as points of the two sets: how many of A, those, those of B.

@@ -3,10 +3,11 @@
 #include <cmath>
 #include <random>
 
-#include "cguide/numeric/clearance_internal.h"
 #include "cguide/numeric/convex_distance.h"
+#include "cguide/numeric/triangle_distance.h"
 #include "tests/benchmark/timing.h"
-#include "tests/cases/convex_pairs.h"
+#include "tests/cases/placed_convex.h"
+#include "tests/cases/triangle_sets.h"
 #include "tests/peers/bullet_peer.h"
 #include "tests/peers/cgal_peer.h"
 #include "tests/peers/fcl_peer.h"
@@ -88,61 +89,30 @@ long ReportExact(std::FILE* out, int count) {
   return wrong;
 }
 
-numeric::Convex PlacedHull(const Points& points, Points* relative) {
-  Vector3d lower = points[0], upper = points[0];
-  for (const Vector3d& p : points) {
-    lower = lower.cwiseMin(p);
-    upper = upper.cwiseMax(p);
-  }
-  numeric::Convex s;
-  s.kind = numeric::CoreKind::kPoints;
-  s.c = (lower + upper) / 2;
-  for (const Vector3d& p : points) {
-    relative->push_back(p - s.c);
-    s.reach = std::max(s.reach, relative->back().norm());
-    s.half = s.half.cwiseMax(relative->back().cwiseAbs());
-  }
-  s.num_points = static_cast<int>(relative->size());
-  s.error = numeric::PlacementError(0, 0, s.reach + s.c.norm(), s.c.norm());
-  return s;
-}
-
-numeric::Convex PlacedBox(const test::BoxCase& box) {
-  numeric::Convex s;
-  s.c = box.center;
-  s.half = box.half;
-  s.reach = box.half.norm() * (1 + 1e-15);
-  s.error = numeric::PlacementError(0, 0, s.reach + s.c.norm(), s.c.norm());
-  return s;
-}
-
+// A pair in the form each solver wants.
 struct EnclosurePair {
-  ConvexPair points;
-  Points relative[2];
-  numeric::PointLanes lanes[2];
-  numeric::Convex shape[2];
+  explicit EnclosurePair(const ConvexPair& pair)
+      : points{numeric::ConvexPoints(pair.a), numeric::ConvexPoints(pair.b)} {
+    for (int side = 0; side < 2; ++side) {
+      const Points& vertices = side == 0 ? pair.a : pair.b;
+      if (pair.boxes) {
+        const test::BoxCase& box = (*pair.boxes)[side];
+        shape[side].SetBox(box);
+        fcl[side] = peers::FclObject::Box(box.center, box.half);
+        bullet[side] = peers::BulletShape::Box(box.center, box.half);
+      } else {
+        shape[side].SetHull(vertices);
+        fcl[side] = peers::FclObject::Hull(vertices);
+        bullet[side] = peers::BulletShape::Hull(vertices);
+      }
+    }
+  }
+
+  numeric::ConvexPoints points[2];
+  test::PlacedConvex shape[2];
   peers::FclObject fcl[2];
   peers::BulletShape bullet[2];
 };
-
-EnclosurePair Prepare(const ConvexPair& pair) {
-  EnclosurePair e;
-  e.points = pair;
-  for (int side = 0; side < 2; ++side) {
-    const Points& points = side == 0 ? pair.a : pair.b;
-    if (pair.boxes) {
-      const test::BoxCase& box = (*pair.boxes)[side];
-      e.shape[side] = PlacedBox(box);
-      e.fcl[side] = peers::FclObject::Box(box.center, box.half);
-      e.bullet[side] = peers::BulletShape::Box(box.center, box.half);
-    } else {
-      e.shape[side] = PlacedHull(points, &e.relative[side]);
-      e.fcl[side] = peers::FclObject::Hull(points);
-      e.bullet[side] = peers::BulletShape::Hull(points);
-    }
-  }
-  return e;
-}
 
 long EnclosureRow(std::FILE* out, const char* name, const std::vector<ConvexPair>& pairs) {
   std::vector<double> times[5], ratios[4];
@@ -150,22 +120,19 @@ long EnclosureRow(std::FILE* out, const char* name, const std::vector<ConvexPair
   long wrong = 0;
   numeric::StageCounts counts;
   for (const ConvexPair& pair : pairs) {
-    EnclosurePair e = Prepare(pair);
-    for (int side = 0; side < 2; ++side) {
-      if (pair.boxes) continue;
-      e.lanes[side] = numeric::PointLanes(e.relative[side]);
-      e.shape[side].points = e.relative[side].data();
-      e.shape[side].lanes = &e.lanes[side];
-    }
+    const EnclosurePair e(pair);
     const Rational truth = SquaredTruth(pair);
     numeric::DirectedClearance placed;
     numeric::DistanceBounds bounds;
     constexpr int kRepeats = 50;
     const double us[5] = {
-        MicrosecondsOf(
-            kRepeats,
-            [&] { placed = numeric::ConvexClearance(e.shape[0], e.shape[1], INFINITY, &counts); }),
-        MicrosecondsOf(kRepeats, [&] { bounds = numeric::BoundConvexDistance(pair.a, pair.b); }),
+        MicrosecondsOf(kRepeats,
+                       [&] {
+                         placed = numeric::ConvexClearance(e.shape[0].set, e.shape[1].set, INFINITY,
+                                                           &counts);
+                       }),
+        MicrosecondsOf(kRepeats,
+                       [&] { bounds = numeric::BoundConvexDistance(e.points[0], e.points[1]); }),
         MicrosecondsOf(kRepeats, [&] { sink = peers::FclDistance(e.fcl[0], e.fcl[1], 1e-12); }),
         MicrosecondsOf(kRepeats, [&] { sink = peers::FclDistance(e.fcl[0], e.fcl[1], 1e-6); }),
         MicrosecondsOf(kRepeats, [&] { sink = peers::BulletDistance(e.bullet[0], e.bullet[1]); })};
@@ -187,7 +154,7 @@ long EnclosureRow(std::FILE* out, const char* name, const std::vector<ConvexPair
 long ReportEnclosures(std::FILE* out, int count) {
   std::fprintf(out,
                "\nEnclosures of distances (us, medians), ratios to FCL 1e-12 and FCL 1e-6\n"
-               "(placed: hull or box with pose and error, points: sets of doubles)\n");
+               "(placed: hull or box with pose and error, points: prepared sets of doubles)\n");
   std::fprintf(out, "%-14s %8s %8s %8s %8s %8s   %13s %13s   %8s %5s\n", "pairs", "placed",
                "points", "FCL e-12", "FCL e-6", "Bullet", "placed,points", "placed,points", "width",
                "wrong");
@@ -204,6 +171,61 @@ long ReportEnclosures(std::FILE* out, int count) {
     if (SquaredTruth(pair) > 0) boxes.push_back(pair);
   }
   return wrong + EnclosureRow(out, "boxes", boxes);
+}
+
+struct MeshShape {
+  int rows;
+  int columns;
+  int twins;  // pairs compared with the textbook, which takes its time
+};
+
+long MeshRow(std::FILE* out, const MeshShape& shape, int count, std::mt19937_64& rng) {
+  std::vector<double> ours, fcl, textbook, ratio;
+  long wrong = 0, pairs = 0, candidates = 0, features = 0;
+  for (int i = 0; i < count; ++i) {
+    test::TriangleCase a = test::BumpySphere(rng, shape.rows, shape.columns, 0.3);
+    test::TriangleCase b = test::BumpySphere(rng, shape.rows, shape.columns, 0.3);
+    test::Move(&b, test::cases::Uniform(rng, 0.7, 1.1) * test::cases::Direction(rng));
+    const numeric::TriangleTree p(a.vertices, a.triangles), q(b.vertices, b.triangles);
+    const auto peer_a = peers::FclObject::Mesh(a.vertices, a.triangles),
+               peer_b = peers::FclObject::Mesh(b.vertices, b.triangles);
+    numeric::TriangleTreeDistance distance;
+    fcl.push_back(MicrosecondsOf(3, [&] { sink = peers::FclDistance(peer_a, peer_b, 1e-6); }));
+    ours.push_back(MicrosecondsOf(3, [&] { distance = SquaredTriangleDistance(p, q); }));
+    ratio.push_back(ours.back() / fcl.back());
+    pairs += distance.pairs;
+    candidates += distance.candidates;
+    features += distance.features;
+    if (i >= shape.twins) continue;
+    const exact::LinkPlacement at = exact::ExactPlacement(Pose{});
+    const auto exact_a = exact::MakeTriangleSet(a.vertices, a.triangles, at),
+               exact_b = exact::MakeTriangleSet(b.vertices, b.triangles, at);
+    Rational squared;
+    textbook.push_back(MicrosecondsOf(
+        1, [&] { squared = exact::SquaredTriangleDistance(exact_a, exact_b).squared; }));
+    wrong += squared != distance.squared;
+  }
+  std::fprintf(out, "%-8d %10.0f %10.1f %10.1f %8.2f   %8.1f %6.1f %6.1f %6ld\n",
+               2 * shape.columns * (shape.rows - 1), Median(textbook), Median(fcl), Median(ours),
+               Median(ratio), static_cast<double>(pairs) / count,
+               static_cast<double>(candidates) / count, static_cast<double>(features) / count,
+               wrong);
+  return wrong;
+}
+
+long ReportMeshes(std::FILE* out, int count) {
+  std::fprintf(out,
+               "\nTriangle sets: exact squared distance, ours; FCL's float one (OBBRSS); the\n"
+               "textbook twin (us, medians); ours / FCL; pairs bounded, candidates, features\n");
+  std::fprintf(out, "%-8s %10s %10s %10s %8s   %8s %6s %6s %6s\n", "faces", "textbook", "FCL",
+               "ours", "ours/FCL", "pairs", "cand.", "feat.", "differ");
+  std::mt19937_64 rng(55);
+  long wrong = 0;
+  for (const MeshShape& shape :
+       {MeshShape{3, 3, 20}, MeshShape{11, 10, 10}, MeshShape{26, 40, 2}}) {
+    wrong += MeshRow(out, shape, count, rng);
+  }
+  return wrong;
 }
 
 // What a solver got wrong, per category.
@@ -251,12 +273,12 @@ long ReportVerdicts(std::FILE* out, int count) {
     Faults loose, tight, bullet, ours;
     for (int i = 0; i < count; ++i) {
       const ConvexPair pair = MakeConvexPair(category, rng);
-      const EnclosurePair e = Prepare(pair);
+      const EnclosurePair e(pair);
       const Rational truth = SquaredTruth(pair);
       loose.Count(peers::FclDistance(e.fcl[0], e.fcl[1], 1e-6), truth);
       tight.Count(peers::FclDistance(e.fcl[0], e.fcl[1], 1e-12), truth);
       bullet.Count(peers::BulletDistance(e.bullet[0], e.bullet[1]), truth);
-      const numeric::DistanceBounds bounds = numeric::BoundConvexDistance(pair.a, pair.b);
+      const numeric::DistanceBounds bounds = numeric::BoundConvexDistance(e.points[0], e.points[1]);
       ours.far += Lift(bounds.lo) * Lift(bounds.lo) > truth;
       ours.far += Lift(bounds.hi) * Lift(bounds.hi) < truth;
       ours.error = std::max(ours.error, bounds.hi - bounds.lo);
@@ -299,6 +321,7 @@ long CompareTwins(std::FILE* out, int count) {
 long ReportDistances(std::FILE* out, const DistanceReportOptions& options) {
   long wrong = ReportExact(out, options.timing_pairs);
   wrong += ReportEnclosures(out, options.timing_pairs);
+  wrong += ReportMeshes(out, options.timing_pairs);
   wrong += ReportVerdicts(out, options.verdict_pairs);
   if (options.twin_pairs > 0) wrong += CompareTwins(out, options.twin_pairs);
   return wrong;

@@ -52,6 +52,12 @@ TEST_CASE("Distances of all kinds of pairs equal the textbook's, witnesses and b
       const auto tried = TrySquaredConvexDistance(pair.a, pair.b);
       REQUIRE(tried.has_value() == (distance.rounds == 0));
       if (tried) REQUIRE(tried->squared == distance.squared);
+      const ConvexPoints a(pair.a), b(pair.b);
+      REQUIRE(SquaredConvexDistance(a, b).squared == distance.squared);
+      const DistanceBounds prepared = BoundConvexDistance(a, b);
+      const DistanceBounds bounds = BoundConvexDistance(pair.a, pair.b);
+      REQUIRE(prepared.lo == bounds.lo);
+      REQUIRE(prepared.hi == bounds.hi);
       ++total;
       filtered += distance.rounds == 0 && distance.exact_signs == 0;
       settled += distance.rounds == 0 && distance.exact_signs > 0;
@@ -193,6 +199,7 @@ TEST_CASE("Empty sets, NaN, infinities and negative radii are refused") {
                             Points{{0, 0, -INFINITY}}, Points{{INFINITY, -INFINITY, 0}}}) {
     CHECK_THROWS_AS(Distance(bad, point), Error);
     CHECK_THROWS_AS(Distance(point, bad), Error);
+    CHECK_THROWS_AS(ConvexPoints(bad), Error);
     CHECK_THROWS_AS(TrySquaredConvexDistance(bad, point), Error);
     CHECK_THROWS_AS(BoundConvexDistance(point, bad), Error);
     CHECK_THROWS_AS(CompareDistance({bad, 0}, {point, 0}, 0), Error);

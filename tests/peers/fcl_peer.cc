@@ -32,6 +32,19 @@ FclObject FclObject::Box(const Eigen::Vector3d& center, const Eigen::Vector3d& h
   return result;
 }
 
+FclObject FclObject::Mesh(const std::vector<Eigen::Vector3d>& vertices,
+                          const std::vector<std::array<int, 3>>& triangles) {
+  auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+  std::vector<fcl::Triangle> faces;
+  for (const auto& [i, j, k] : triangles) faces.emplace_back(i, j, k);
+  model->beginModel();
+  model->addSubModel(vertices, faces);
+  model->endModel();
+  FclObject result;
+  result.data_ = std::make_shared<Data>(Data{fcl::CollisionObjectd(model)});
+  return result;
+}
+
 double FclDistance(const FclObject& a, const FclObject& b, double tolerance) try {
   fcl::DistanceRequestd request;
   request.distance_tolerance = tolerance;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace cguide::peers {
 
@@ -13,6 +15,10 @@ class FclObject {
   static FclObject Hull(std::span<const Eigen::Vector3d> points);
   /** An axis-aligned box. */
   static FclObject Box(const Eigen::Vector3d& center, const Eigen::Vector3d& half);
+
+  /** A triangle mesh under OBBRSS volumes, FCL's usual choice for distances. Its surface only. */
+  static FclObject Mesh(const std::vector<Eigen::Vector3d>& vertices,
+                        const std::vector<std::array<int, 3>>& triangles);
 
   struct Data;
 
