@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/convex_distance_internal.h"
 #include "cguide/numeric/fp_guard.h"
 #include "cguide/numeric/mesh_internal.h"
@@ -20,7 +21,17 @@ struct TriangleTree::Data {
   std::vector<MeshNode> boxes;                 ///< of the triangles
   std::vector<std::array<int, 3>> vertex_ids;  ///< equal for equal points
   std::vector<int> index;                      ///< in the order given
-  double largest = 0;
+  double largest = 0;                          ///< coordinate; infinite where one is not finite
+  std::shared_ptr<const Data> local;           ///< where the corners are those of `local`, placed
+  exact::LinkPlacement X;                      ///< by this
+  double error = 0;                            ///< bound on each coordinate's error then
+
+  Vector3q ExactCorner(int triangle, int k) const {
+    if (!local) return Lift(corners[triangle][k]);
+    return exact::Transformed(X.R, Lift(local->corners[triangle][k])) + X.p;
+  }
+
+  void Measure();
 };
 
 namespace {
@@ -60,6 +71,15 @@ struct Side {
   const MeshNode& node(int k) const { return tree ? tree->nodes[k] : hull_box; }
   const MeshNode& box(int item) const { return tree ? tree->boxes[item] : hull_box; }
   PointSet item(int k) const { return tree ? PointSet{tree->corners[k], nullptr} : hull; }
+  double error() const { return tree ? tree->error : 0; }
+  std::vector<Vector3q> ExactItem(int k) const {
+    std::vector<Vector3q> points;
+    for (int c = 0; c < 3 && tree; ++c) points.push_back(tree->ExactCorner(k, c));
+    for (const Vector3d& p : tree ? std::span<const Vector3d>() : hull.points) {
+      points.push_back(Lift(p));
+    }
+    return points;
+  }
 };
 
 // A set of few points for the filter, which wants lanes.
@@ -83,7 +103,8 @@ struct Candidate {
 
 class Search {
  public:
-  Search(const Side& a, const Side& b) : a_(a), b_(b) {}
+  // Corners are off by sqrt 3 times the error of their coordinates, and distances by their sum.
+  Search(const Side& a, const Side& b) : a_(a), b_(b), slack_(2 * (a.error() + b.error())) {}
 
   TriangleTreeDistance Run() {
     Walk();
@@ -103,6 +124,7 @@ class Search {
 
   const Side& a_;
   const Side& b_;
+  double slack_;
   double upper_ = INFINITY;  // The distance is at most this.
   bool meet_ = false;
   std::vector<Candidate> candidates_;
@@ -117,7 +139,7 @@ void Search::Walk() {
     const auto [i, j] = stack.back();
     stack.pop_back();
     const MeshNode &a = a_.node(i), &b = b_.node(j);
-    if (Farther(a, b, upper_)) continue;
+    if (Farther(a, b, upper_ + slack_)) continue;
     if (a.count > 0 && b.count > 0) {
       VisitLeaves(a, b);
       continue;
@@ -137,10 +159,10 @@ void Search::Walk() {
 
 void Search::VisitLeaves(const MeshNode& a, const MeshNode& b) {
   for (int i = a.first; i < a.first + a.count; ++i) {
-    if (Farther(a_.box(i), b, upper_)) continue;
+    if (Farther(a_.box(i), b, upper_ + slack_)) continue;
     for (int j = b.first; j < b.first + b.count; ++j) {
       if (meet_) return;
-      if (!Farther(a_.box(i), b_.box(j), upper_)) VisitItems(i, j);
+      if (!Farther(a_.box(i), b_.box(j), upper_ + slack_)) VisitItems(i, j);
     }
   }
 }
@@ -148,10 +170,10 @@ void Search::VisitLeaves(const MeshNode& a, const MeshNode& b) {
 void Search::VisitItems(int a, int b) {
   ++result_.pairs;
   GjkResult gjk;
-  const DistanceBounds bounds = BoundSets(a_.item(a), b_.item(b), upper_, &gjk);
-  if (bounds.lo > upper_) return;
-  upper_ = std::min(upper_, bounds.hi);
-  candidates_.push_back({a, b, bounds.lo, SimplexOf(gjk)});
+  const DistanceBounds bounds = BoundSets(a_.item(a), b_.item(b), upper_ + slack_, &gjk);
+  if (bounds.lo > upper_ + slack_) return;
+  upper_ = std::min(upper_, bounds.hi + slack_);
+  candidates_.push_back({a, b, bounds.lo - slack_, SimplexOf(gjk)});
   if (!gjk.overlap) return;
   // Where sets meet all over, the first proof ends the search.
   const Simplex simplex = Decide(candidates_.back());
@@ -160,19 +182,36 @@ void Search::VisitItems(int a, int b) {
   Accept(candidates_.back(), simplex, 0);
 }
 
-Simplex Search::Decide(const Candidate& candidate) const {
-  const Item a(a_.item(candidate.a)), b(b_.item(candidate.b));
+// A pair of items for signs, in doubles or over Q.
+struct ItemPair {
+  Item a, b;
+  exact::internal::IntegerSets integers;
   HullPair hulls;
-  hulls.a = a.set;
-  hulls.b = b.set;
-  return DecideSimplex(&hulls, candidate.simplex);
+
+  ItemPair(const Side& side_a, const Side& side_b, const Candidate& candidate)
+      : a(side_a.item(candidate.a)), b(side_b.item(candidate.b)) {
+    hulls.a = a.set;
+    hulls.b = b.set;
+    const double error = std::max(side_a.error(), side_b.error());
+    if (error == 0) return;
+    integers =
+        exact::internal::ToIntegers(side_a.ExactItem(candidate.a), side_b.ExactItem(candidate.b));
+    hulls.integers = &integers;
+    // A rounded difference of points off by `error` is within u |d| + 2 error (1 + u) of the real
+    // one, and that below u (|d| + blur).
+    hulls.blur = 3 * error / kUnit;
+  }
+  ItemPair(const ItemPair&) = delete;
+  ItemPair& operator=(const ItemPair&) = delete;
+};
+
+Simplex Search::Decide(const Candidate& candidate) const {
+  ItemPair pair(a_, b_, candidate);
+  return DecideSimplex(&pair.hulls, candidate.simplex);
 }
 
 Rational Search::Squared(const Candidate& candidate, const Simplex& simplex) const {
-  HullPair hulls;
-  hulls.a = a_.item(candidate.a);
-  hulls.b = b_.item(candidate.b);
-  return SquaredDistance(hulls, simplex);
+  return SquaredDistance(ItemPair(a_, b_, candidate).hulls, simplex);
 }
 
 // What the simplex is made of, as points of the two sets: how many of A, those, those of B.
@@ -193,16 +232,13 @@ std::vector<int> Search::FeatureOf(const Candidate& candidate, const Simplex& si
 }
 
 void Search::Accept(const Candidate& candidate, const Simplex& simplex, const Rational& squared) {
-  const PointSet a = a_.item(candidate.a), b = b_.item(candidate.b);
+  const std::vector<Vector3q> a = a_.ExactItem(candidate.a), b = b_.ExactItem(candidate.b);
   HullDistance distance;
   distance.size = simplex.size;
-  std::vector<Vector3q> p, q;
   for (int k = 0; k < simplex.size; ++k) {
-    p.push_back(Lift(a.points[simplex.corners[k].i]));
-    q.push_back(Lift(b.points[simplex.corners[k].j]));
-    distance.corners[k] = {k, k};
+    distance.corners[k] = {simplex.corners[k].i, simplex.corners[k].j};
   }
-  exact::ConvexDistance closest = ClosestPoints(p, q, distance);
+  exact::ConvexDistance closest = ClosestPoints(a, b, distance);
   result_.squared = squared;
   result_.a = std::move(closest.a);
   result_.b = std::move(closest.b);
@@ -245,9 +281,8 @@ exact::TriangleSet ExactSet(const TriangleTree& tree) {
   set.triangles.resize(data.corners.size());
   set.bounds.resize(data.corners.size());
   for (std::size_t k = 0; k < data.corners.size(); ++k) {
-    const auto& t = data.corners[k];
-    const int index = data.index[k];
-    set.triangles[index] = {Lift(t[0]), Lift(t[1]), Lift(t[2])};
+    const int index = data.index[k], triangle = static_cast<int>(k);
+    for (int c = 0; c < 3; ++c) set.triangles[index][c] = data.ExactCorner(triangle, c);
     set.bounds[index] = exact::BoundsOf(set.triangles[index]);
   }
   return set;
@@ -275,15 +310,60 @@ TriangleTree::TriangleTree(const std::vector<Vector3d>& vertices,
     const auto& [i, j, k] = triangles[t];
     data->index.push_back(t);
     data->vertex_ids.push_back({ids[i], ids[j], ids[k]});
-    const auto& c = data->corners.emplace_back(std::array{vertices[i], vertices[j], vertices[k]});
-    MeshNode& box = data->boxes.emplace_back();
-    box.lower = c[0].cwiseMin(c[1]).cwiseMin(c[2]);
-    box.upper = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
-    data->largest =
-        std::max({data->largest, box.lower.cwiseAbs().maxCoeff(), box.upper.cwiseAbs().maxCoeff()});
+    data->corners.push_back({vertices[i], vertices[j], vertices[k]});
   }
   data->nodes = std::move(mesh.nodes);
+  data->Measure();
   data_ = std::move(data);
+}
+
+void TriangleTree::Data::Measure() {
+  boxes.clear();
+  largest = 0;
+  for (const auto& c : corners) {
+    MeshNode& box = boxes.emplace_back();
+    box.lower = c[0].cwiseMin(c[1]).cwiseMin(c[2]);
+    box.upper = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
+    for (const Vector3d& p : c) {
+      largest = p.allFinite() ? std::max(largest, p.cwiseAbs().maxCoeff()) : INFINITY;
+    }
+  }
+}
+
+TriangleTree TriangleTree::Placed(const exact::LinkPlacement& X) const {
+  const std::shared_ptr<const Data> local = data_->local ? data_->local : data_;
+  auto data = std::make_shared<Data>(*local);
+  data->local = local;
+  data->X = X;
+  Eigen::Matrix3d R;
+  Vector3d p;
+  for (int i = 0; i < 3; ++i) {
+    p[i] = NearestDouble(X.p[i]);
+    for (int j = 0; j < 3; ++j) R(i, j) = NearestDouble(X.R(i, j));
+  }
+  // A coordinate is a sum of four terms: entries and p rounded, u each, products and three sums:
+  // within 5.1 u (sum_j |R_ij| |v_j| + |p_i|), and 2^-1060 for all that underflows.
+  double magnitude = 0;
+  for (auto& triangle : data->corners) {
+    for (Vector3d& v : triangle) {
+      magnitude = std::max(magnitude, (R.cwiseAbs() * v.cwiseAbs() + p.cwiseAbs()).maxCoeff());
+      v = R * v + p;
+    }
+  }
+  data->error = 8 * kUnit * magnitude + 0x1p-1000;
+  data->Measure();
+  for (int k = static_cast<int>(data->nodes.size()) - 1; k >= 0; --k) {
+    MeshNode& node = data->nodes[k];
+    const MeshNode* parts = node.count > 0 ? &data->boxes[node.first] : &data->nodes[node.first];
+    const int count = node.count > 0 ? node.count : 2;
+    node.lower = parts[0].lower;
+    node.upper = parts[0].upper;
+    for (int i = 1; i < count; ++i) {
+      node.lower = node.lower.cwiseMin(parts[i].lower);
+      node.upper = node.upper.cwiseMax(parts[i].upper);
+    }
+  }
+  return TriangleTree(std::move(data));
 }
 
 TriangleTreeDistance SquaredTriangleDistance(const TriangleTree& a, const TriangleTree& b) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cguide/exact/triangle_distance.h"
@@ -19,10 +20,17 @@ class TriangleTree {
   TriangleTree(const std::vector<Eigen::Vector3d>& vertices,
                const std::vector<std::array<int, 3>>& triangles);
 
+  /** The triangles this tree was made of, placed by x -> R x + p over Q, as exact::MakeTriangleSet
+   does (the errors of X are not looked at; R need not be rigid). Keeps the tree: linear in the
+   number of triangles, in doubles; exact corners are computed where they are needed. */
+  TriangleTree Placed(const exact::LinkPlacement& X) const;
+
   struct Data;
   const Data& data() const { return *data_; }
 
  private:
+  explicit TriangleTree(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
   std::shared_ptr<const Data> data_;
 };
 

@@ -114,9 +114,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "Near touch, where Bullet in double precision sees gaps of millimetres between sets that "
-    "meet") {
+TEST_CASE("Near touch, where Bullet in double precision sees gaps between sets that meet") {
   std::mt19937_64 rng(10);
   int peer_wrong = 0;
   for (int i = 0; i < 4000; ++i) {

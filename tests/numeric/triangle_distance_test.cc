@@ -106,6 +106,33 @@ TEST_CASE("Hulls and points have the textbook's distance from triangles") {
   }
 }
 
+TEST_CASE("Triangles placed over Q have the textbook's distance") {
+  std::mt19937_64 rng(6);
+  int meeting = 0, apart = 0;
+  for (int i = 0; i < 60; ++i) {
+    const bool grid = i % 2;
+    const TriangleCase a = grid ? test::GridSoup(rng, 6, 2) : test::BumpySphere(rng, 5, 7, 0.4);
+    const TriangleCase b = grid ? test::GridSoup(rng, 6, 2) : test::BumpySphere(rng, 4, 6, 0.4);
+    exact::LinkPlacement X, Y;
+    X.R = exact::RotationOf({0.25, -0.5, 0.125, 0.75});
+    Y.R = i % 3 ? X.R : exact::RotationOf({0.1, 0.7, -0.3, 0.2});
+    X.p = Y.p = Vector3q(Rational(1, 3), 50, Rational(-2, 7));
+    Y.p += exact::Transformed(X.R, Lift(Vector3d(grid ? i % 5 : 0.9, 0, 0.125)));
+    const TriangleTreeDistance result =
+        SquaredTriangleDistance(Tree(a).Placed(X), Tree(b).Placed(X).Placed(Y));
+    const exact::TriangleSet p = exact::MakeTriangleSet(a.vertices, a.triangles, X),
+                             q = exact::MakeTriangleSet(b.vertices, b.triangles, Y);
+    CAPTURE(i);
+    REQUIRE(result.squared == exact::SquaredTriangleDistance(p, q).squared);
+    REQUIRE(exact::SquaredNorm(result.a - result.b) == result.squared);
+    REQUIRE(Holds(p.triangles.at(result.index_a), result.a));
+    REQUIRE(Holds(q.triangles.at(result.index_b), result.b));
+    (result.squared == 0 ? meeting : apart)++;
+  }
+  CHECK(meeting > 5);
+  CHECK(apart > 20);
+}
+
 TEST_CASE("Triangles at the edges of double precision have the textbook's distance") {
   std::mt19937_64 rng(5);
   for (const double scale : {0x1p-1060, 0x1p-400, 0x1p59, 0x1p1017}) {
