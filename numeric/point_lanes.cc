@@ -34,94 +34,120 @@ struct Direction {
   const double* origin;
 };
 
-// n.p of half a block; `at` is its first x.
-CGUIDE_INLINE void Dot(const double* at, const Lane* n, Lane* result) {
+struct Filled {
   Lane x, y, z;
-  Load(at, &x);
-  Load(at + kBlock, &y);
-  Load(at + 2 * kBlock, &z);
-  *result = n[0] * x + n[1] * y + n[2] * z;
+};
+
+CGUIDE_INLINE void FillAll(const double* from, Filled* to) {
+  Fill(from[0], &to->x);
+  Fill(from[1], &to->y);
+  Fill(from[2], &to->z);
 }
 
-CGUIDE_INLINE void DotFrom(const double* at, const Lane* n, const Lane* origin, Lane* result) {
+// Both halves of a block of n.p; `at` is its first x. Written out, so that it stays in registers.
+CGUIDE_INLINE void Dot(const double* at, const Filled& n, Lane* low, Lane* high) {
   Lane x, y, z;
   Load(at, &x);
   Load(at + kBlock, &y);
   Load(at + 2 * kBlock, &z);
-  *result = n[0] * (x - origin[0]) + n[1] * (y - origin[1]) + n[2] * (z - origin[2]);
+  *low = n.x * x + n.y * y + n.z * z;
+  Load(at + 4, &x);
+  Load(at + kBlock + 4, &y);
+  Load(at + 2 * kBlock + 4, &z);
+  *high = n.x * x + n.y * y + n.z * z;
+}
+
+// The same of n.(p - origin).
+CGUIDE_INLINE void DotFrom(const double* at, const Filled& n, const Filled& origin, Lane* low,
+                           Lane* high) {
+  Lane x, y, z;
+  Load(at, &x);
+  Load(at + kBlock, &y);
+  Load(at + 2 * kBlock, &z);
+  *low = n.x * (x - origin.x) + n.y * (y - origin.y) + n.z * (z - origin.z);
+  Load(at + 4, &x);
+  Load(at + kBlock + 4, &y);
+  Load(at + 2 * kBlock + 4, &z);
+  *high = n.x * (x - origin.x) + n.y * (y - origin.y) + n.z * (z - origin.z);
+}
+
+// Keeps the greater value with its index, of equal ones the lower index.
+CGUIDE_INLINE void Keep(const Lane& value, const Mask& index, Lane* best, Mask* at) {
+  const Mask more = (value > *best) | ((value == *best) & (index < *at));
+  *best = more ? value : *best;
+  *at = more ? index : *at;
 }
 
 CGUIDE_INLINE int FarthestLoop(const double* data, int blocks, const double* direction) {
-  Lane n[3], best[2], dot;
-  for (int k = 0; k < 3; ++k) Fill(direction[k], &n[k]);
-  Mask block[2] = {Mask{0, 0, 0, 0}, Mask{0, 0, 0, 0}};
-  for (int half = 0; half < 2; ++half) Dot(data + 4 * half, n, &best[half]);
-  for (long long i = 1; i < blocks; ++i) {
-    const Mask at = {i, i, i, i};
-    for (int half = 0; half < 2; ++half) {
-      Dot(data + 3 * kBlock * i + 4 * half, n, &dot);
-      const Mask more = dot > best[half];
-      best[half] = more ? dot : best[half];
-      block[half] = more ? at : block[half];
-    }
+  Filled n;
+  FillAll(direction, &n);
+  Lane best0, best1, low, high;
+  Dot(data, n, &best0, &best1);
+  Mask at0 = {0, 1, 2, 3}, at1 = {4, 5, 6, 7}, index = at0;
+  const Mask step = {kBlock, kBlock, kBlock, kBlock}, half = {4, 4, 4, 4};
+  for (int i = 1; i < blocks; ++i) {
+    index += step;
+    Dot(data + 3 * kBlock * i, n, &low, &high);
+    const Mask more0 = low > best0, more1 = high > best1;
+    best0 = more0 ? low : best0;
+    best1 = more1 ? high : best1;
+    at0 = more0 ? index : at0;
+    at1 = more1 ? index + half : at1;
   }
-  int index = 0;
-  double value = -std::numeric_limits<double>::infinity();
-  for (int half = 0; half < 2; ++half) {
-    for (int k = 0; k < 4; ++k) {
-      const int candidate = static_cast<int>(block[half][k]) * kBlock + 4 * half + k;
-      if (best[half][k] > value || (best[half][k] == value && candidate < index)) {
-        value = best[half][k];
-        index = candidate;
-      }
-    }
-  }
-  return index;
+  Keep(best1, at1, &best0, &at0);
+  Keep(__builtin_shufflevector(best0, best0, 2, 3, 0, 1),
+       __builtin_shufflevector(at0, at0, 2, 3, 0, 1), &best0, &at0);
+  Keep(__builtin_shufflevector(best0, best0, 1, 0, 3, 2),
+       __builtin_shufflevector(at0, at0, 1, 0, 3, 2), &best0, &at0);
+  return static_cast<int>(at0[0]);
 }
 
 CGUIDE_INLINE double GreatestLoop(const double* data, int blocks, const double* direction) {
-  Lane n[3], best[2], dot;
-  for (int k = 0; k < 3; ++k) Fill(direction[k], &n[k]);
-  for (int half = 0; half < 2; ++half) Dot(data + 4 * half, n, &best[half]);
+  Filled n;
+  FillAll(direction, &n);
+  Lane best0, best1, low, high;
+  Dot(data, n, &best0, &best1);
   for (int i = 1; i < blocks; ++i) {
-    for (int half = 0; half < 2; ++half) {
-      Dot(data + 3 * kBlock * i + 4 * half, n, &dot);
-      best[half] = dot > best[half] ? dot : best[half];
-    }
+    Dot(data + 3 * kBlock * i, n, &low, &high);
+    best0 = low > best0 ? low : best0;
+    best1 = high > best1 ? high : best1;
   }
-  best[0] = best[1] > best[0] ? best[1] : best[0];
-  return std::max({best[0][0], best[0][1], best[0][2], best[0][3]});
+  best0 = best1 > best0 ? best1 : best0;
+  low = __builtin_shufflevector(best0, best0, 2, 3, 0, 1);
+  best0 = low > best0 ? low : best0;
+  return best0[1] > best0[0] ? best0[1] : best0[0];
 }
 
 CGUIDE_INLINE double LeastFromLoop(const double* data, int blocks, Direction direction) {
-  Lane n[3], origin[3], best[2], dot;
-  for (int k = 0; k < 3; ++k) Fill(direction.n[k], &n[k]);
-  for (int k = 0; k < 3; ++k) Fill(direction.origin[k], &origin[k]);
-  for (int half = 0; half < 2; ++half) DotFrom(data + 4 * half, n, origin, &best[half]);
+  Filled n, origin;
+  FillAll(direction.n, &n);
+  FillAll(direction.origin, &origin);
+  Lane best0, best1, low, high;
+  DotFrom(data, n, origin, &best0, &best1);
   for (int i = 1; i < blocks; ++i) {
-    for (int half = 0; half < 2; ++half) {
-      DotFrom(data + 3 * kBlock * i + 4 * half, n, origin, &dot);
-      best[half] = dot < best[half] ? dot : best[half];
-    }
+    DotFrom(data + 3 * kBlock * i, n, origin, &low, &high);
+    best0 = low < best0 ? low : best0;
+    best1 = high < best1 ? high : best1;
   }
-  best[0] = best[1] < best[0] ? best[1] : best[0];
-  return std::min({best[0][0], best[0][1], best[0][2], best[0][3]});
+  best0 = best1 < best0 ? best1 : best0;
+  low = __builtin_shufflevector(best0, best0, 2, 3, 0, 1);
+  best0 = low < best0 ? low : best0;
+  return best0[1] < best0[0] ? best0[1] : best0[0];
 }
 
 CGUIDE_INLINE void CollectLoop(const double* data, int blocks, Direction direction, double limit,
                                std::vector<int>* indices) {
-  Lane n[3], origin[3], most, dot[2];
-  for (int k = 0; k < 3; ++k) Fill(direction.n[k], &n[k]);
-  for (int k = 0; k < 3; ++k) Fill(direction.origin[k], &origin[k]);
+  Filled n, origin;
+  FillAll(direction.n, &n);
+  FillAll(direction.origin, &origin);
+  Lane most, low, high;
   Fill(limit, &most);
   for (int i = 0; i < blocks; ++i) {
-    for (int half = 0; half < 2; ++half) {
-      DotFrom(data + 3 * kBlock * i + 4 * half, n, origin, &dot[half]);
-    }
-    const Mask beyond = (dot[0] > most) & (dot[1] > most);
+    DotFrom(data + 3 * kBlock * i, n, origin, &low, &high);
+    const Mask beyond = (low > most) & (high > most);
     if ((beyond[0] & beyond[1] & beyond[2] & beyond[3]) != 0) continue;
     for (int k = 0; k < kBlock; ++k) {
-      if (!(dot[k / 4][k % 4] > limit)) indices->push_back(kBlock * i + k);
+      if (!((k < 4 ? low[k] : high[k - 4]) > limit)) indices->push_back(kBlock * i + k);
     }
   }
 }
