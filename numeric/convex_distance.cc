@@ -58,11 +58,21 @@ HullDistance Decide(HullPair* hulls) {
   return Answer(*hulls, simplex, rounds);
 }
 
-std::vector<Vector3d> NearestDoubles(std::span<const Vector3q> points) {
+class RationalSpans : public RationalPoints {
+ public:
+  RationalSpans(std::span<const Vector3q> a, std::span<const Vector3q> b) : a_(a), b_(b) {}
+  Vector3q Get(bool of_b, int index) const override { return of_b ? b_[index] : a_[index]; }
+
+ private:
+  std::span<const Vector3q> a_, b_;
+};
+
+// Doubles below the points in magnitude by less than an ulp, 2 u of themselves (or 2^-1074).
+std::vector<Vector3d> TruncatedDoubles(std::span<const Vector3q> points) {
   std::vector<Vector3d> result;
   result.reserve(points.size());
   for (const Vector3q& p : points) {
-    result.emplace_back(NearestDouble(p[0]), NearestDouble(p[1]), NearestDouble(p[2]));
+    result.emplace_back(p[0].get_d(), p[1].get_d(), p[2].get_d());
   }
   return result;
 }
@@ -127,31 +137,28 @@ std::optional<HullDistance> TrySquaredConvexDistance(Points a, Points b) {
 HullDistance SquaredConvexDistance(std::span<const Vector3q> a, std::span<const Vector3q> b) {
   RequireRoundToNearest();
   Require(!a.empty() && !b.empty(), "the distance of an empty hull is not defined");
-  const exact::internal::IntegerSets integers = exact::internal::ToIntegers(a, b);
-  const std::vector<Vector3d> near_a = NearestDoubles(a), near_b = NearestDoubles(b);
+  const RationalSpans rational(a, b);
+  const std::vector<Vector3d> near_a = TruncatedDoubles(a), near_b = TruncatedDoubles(b);
   const PointLanes lanes_a(near_a), lanes_b(near_b);
   HullPair hulls = PairOf({near_a, &lanes_a}, {near_b, &lanes_b});
-  hulls.integers = &integers;
-  // Two points within u M (1 + u) (or 2^-1075) of the real ones and a rounded difference: within
-  // u (|d| + 2 M (1 + 3 u)), so that 3 M, or 2^-900 if that is more, covers it.
+  hulls.rational = &rational;
+  // Two points within 2 u M (1 + 4 u) (or 2^-1074) of the real ones and a rounded difference:
+  // within u (|d| + 4 M (1 + 6 u)), so that 6 M, or 2^-900 if that is more, covers it.
   const double largest = std::max(LargestCoordinate(lanes_a), LargestCoordinate(lanes_b));
-  if (hulls.filter) hulls.blur = std::max(0x1p-900, 3 * largest);
+  if (hulls.filter) hulls.blur = std::max(0x1p-900, 6 * largest);
   return Decide(&hulls);
 }
 
 exact::ConvexDistance ClosestPoints(std::span<const Vector3q> a, std::span<const Vector3q> b,
                                     const HullDistance& distance) {
   Require(distance.size >= 1 && distance.size <= 4, "no answer of SquaredConvexDistance");
-  std::vector<Vector3q> corners_a, corners_b;
   Simplex simplex;
   for (int k = 0; k < distance.size; ++k) {
-    corners_a.push_back(a[distance.corners[k][0]]);
-    corners_b.push_back(b[distance.corners[k][1]]);
-    simplex.Push({k, k});
+    simplex.Push({distance.corners[k][0], distance.corners[k][1]});
   }
-  const exact::internal::IntegerSets integers = exact::internal::ToIntegers(corners_a, corners_b);
+  const RationalSpans rational(a, b);
   HullPair hulls;
-  hulls.integers = &integers;
+  hulls.rational = &rational;
   const std::array<mpz_class, 4> weights = IntegerWeights(MakeIntegerFace(hulls, simplex));
   mpz_class sum = 0;
   for (const mpz_class& x : weights) sum += x;

@@ -12,12 +12,19 @@ namespace cguide::numeric {
 
 using exact::internal::IntegerPoint;
 
+/** Points over Q behind doubles that are only near them; asked for one by one, when doubles do not
+ carry a sign. */
+class RationalPoints {
+ public:
+  virtual ~RationalPoints() = default;
+  virtual Vector3q Get(bool of_b, int index) const = 0;
+};
+
 /** Two sets of points for signs that are filtered in doubles and settled in integers. */
 struct HullPair {
   PointSet a;
   PointSet b;
-  /** The points themselves where the doubles are only near them, else null. */
-  const exact::internal::IntegerSets* integers = nullptr;
+  const RationalPoints* rational = nullptr;  ///< null where the doubles are the points
   /** What the magnitude of a difference is raised by so that its error is below u times that: 0
    where the doubles are the points. */
   double blur = 0;

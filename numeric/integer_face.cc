@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <vector>
 
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/difference_face_internal.h"
@@ -52,30 +53,54 @@ IntegerPoint Shifted(const Vector3d& x, int exponent) {
 }  // namespace
 
 IntegerPoint IntegerDifference(const HullPair& hulls, bool of_b, int p, int q) {
-  if (hulls.integers) {
-    const auto& points = of_b ? hulls.integers->b : hulls.integers->a;
-    return Minus(points[p], points[q]);
+  if (hulls.rational) {
+    const Vector3q d = hulls.rational->Get(of_b, p) - hulls.rational->Get(of_b, q);
+    const mpz_class scale = lcm(lcm(d[0].get_den(), d[1].get_den()), d[2].get_den());
+    IntegerPoint result;
+    for (int k = 0; k < 3; ++k) result[k] = d[k].get_num() * (scale / d[k].get_den());
+    return result;
   }
   const auto& points = of_b ? hulls.b.points : hulls.a.points;
   const int lowest = LowestExponent(points[p], LowestExponent(points[q], 1024));
   return Minus(Shifted(points[p], lowest), Shifted(points[q], lowest));
 }
 
-IntegerFace MakeIntegerFace(const HullPair& hulls, const Simplex& simplex) {
-  IntegerFace face;
-  face.size = simplex.size;
+namespace {
+
+void SetCornersFromDoubles(const HullPair& hulls, const Simplex& simplex, IntegerFace* face) {
   int lowest = 1024;
-  for (int k = 0; k < face.size && !hulls.integers; ++k) {
+  for (int k = 0; k < simplex.size; ++k) {
     lowest = LowestExponent(hulls.a.points[simplex.corners[k].i], lowest);
     lowest = LowestExponent(hulls.b.points[simplex.corners[k].j], lowest);
   }
-  face.exponent = hulls.integers ? 0 : lowest;
-  if (hulls.integers) face.scale = hulls.integers->scale;
-  for (int k = 0; k < face.size; ++k) {
+  face->exponent = lowest;
+  for (int k = 0; k < simplex.size; ++k) {
     const auto& [i, j] = simplex.corners[k];
-    face.w[k] = hulls.integers
-                    ? Minus(hulls.integers->a[i], hulls.integers->b[j])
-                    : Minus(Shifted(hulls.a.points[i], lowest), Shifted(hulls.b.points[j], lowest));
+    face->w[k] = Minus(Shifted(hulls.a.points[i], lowest), Shifted(hulls.b.points[j], lowest));
+  }
+}
+
+void SetCornersFromRationals(const RationalPoints& points, const Simplex& simplex,
+                             IntegerFace* face) {
+  std::vector<Vector3q> a, b;
+  for (int k = 0; k < simplex.size; ++k) {
+    a.push_back(points.Get(false, simplex.corners[k].i));
+    b.push_back(points.Get(true, simplex.corners[k].j));
+  }
+  exact::internal::IntegerSets integers = exact::internal::ToIntegers(a, b);
+  face->scale = integers.scale;
+  for (int k = 0; k < simplex.size; ++k) face->w[k] = Minus(integers.a[k], integers.b[k]);
+}
+
+}  // namespace
+
+IntegerFace MakeIntegerFace(const HullPair& hulls, const Simplex& simplex) {
+  IntegerFace face;
+  face.size = simplex.size;
+  if (hulls.rational) {
+    SetCornersFromRationals(*hulls.rational, simplex, &face);
+  } else {
+    SetCornersFromDoubles(hulls, simplex, &face);
   }
   if (face.size == 4) return face;
   if (face.size == 1) {

@@ -72,13 +72,8 @@ struct Side {
   const MeshNode& box(int item) const { return tree ? tree->boxes[item] : hull_box; }
   PointSet item(int k) const { return tree ? PointSet{tree->corners[k], nullptr} : hull; }
   double error() const { return tree ? tree->error : 0; }
-  std::vector<Vector3q> ExactItem(int k) const {
-    std::vector<Vector3q> points;
-    for (int c = 0; c < 3 && tree; ++c) points.push_back(tree->ExactCorner(k, c));
-    for (const Vector3d& p : tree ? std::span<const Vector3d>() : hull.points) {
-      points.push_back(Lift(p));
-    }
-    return points;
+  Vector3q ExactPoint(int item, int index) const {
+    return tree ? tree->ExactCorner(item, index) : Lift(hull.points[index]);
   }
 };
 
@@ -183,26 +178,37 @@ void Search::VisitItems(int a, int b) {
 }
 
 // A pair of items for signs, in doubles or over Q.
-struct ItemPair {
-  Item a, b;
-  exact::internal::IntegerSets integers;
-  HullPair hulls;
-
+class ItemPair : public RationalPoints {
+ public:
   ItemPair(const Side& side_a, const Side& side_b, const Candidate& candidate)
-      : a(side_a.item(candidate.a)), b(side_b.item(candidate.b)) {
-    hulls.a = a.set;
-    hulls.b = b.set;
+      : side_a_(side_a),
+        side_b_(side_b),
+        candidate_(candidate),
+        a_(side_a.item(candidate.a)),
+        b_(side_b.item(candidate.b)) {
+    hulls.a = a_.set;
+    hulls.b = b_.set;
     const double error = std::max(side_a.error(), side_b.error());
     if (error == 0) return;
-    integers =
-        exact::internal::ToIntegers(side_a.ExactItem(candidate.a), side_b.ExactItem(candidate.b));
-    hulls.integers = &integers;
+    hulls.rational = this;
     // A rounded difference of points off by `error` is within u |d| + 2 error (1 + u) of the real
     // one, and that below u (|d| + blur).
     hulls.blur = 3 * error / kUnit;
   }
   ItemPair(const ItemPair&) = delete;
   ItemPair& operator=(const ItemPair&) = delete;
+
+  Vector3q Get(bool of_b, int index) const override {
+    return of_b ? side_b_.ExactPoint(candidate_.b, index) : side_a_.ExactPoint(candidate_.a, index);
+  }
+
+  HullPair hulls;
+
+ private:
+  const Side& side_a_;
+  const Side& side_b_;
+  const Candidate& candidate_;
+  Item a_, b_;
 };
 
 Simplex Search::Decide(const Candidate& candidate) const {
@@ -232,11 +238,13 @@ std::vector<int> Search::FeatureOf(const Candidate& candidate, const Simplex& si
 }
 
 void Search::Accept(const Candidate& candidate, const Simplex& simplex, const Rational& squared) {
-  const std::vector<Vector3q> a = a_.ExactItem(candidate.a), b = b_.ExactItem(candidate.b);
+  std::vector<Vector3q> a, b;
   HullDistance distance;
   distance.size = simplex.size;
   for (int k = 0; k < simplex.size; ++k) {
-    distance.corners[k] = {simplex.corners[k].i, simplex.corners[k].j};
+    a.push_back(a_.ExactPoint(candidate.a, simplex.corners[k].i));
+    b.push_back(b_.ExactPoint(candidate.b, simplex.corners[k].j));
+    distance.corners[k] = {k, k};
   }
   exact::ConvexDistance closest = ClosestPoints(a, b, distance);
   result_.squared = squared;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/convex_distance.h"
 #include "cguide/numeric/triangle_distance.h"
 #include "tests/benchmark/timing.h"
@@ -64,6 +65,31 @@ long ExactRow(std::FILE* out, const char* name, const std::vector<ConvexPair>& p
   return wrong;
 }
 
+// Turned by a rational rotation that no double holds; CGAL over integers, as our reference calls
+// it.
+long RationalRow(std::FILE* out, const char* name, const std::vector<ConvexPair>& pairs) {
+  std::vector<double> ours, cgal, ratio;
+  long wrong = 0;
+  const Matrix3q R = exact::RotationOf({0.3, -0.1, 0.7, 0.5});
+  for (const ConvexPair& pair : pairs) {
+    std::vector<Vector3q> a = Lifted(pair.a), b = Lifted(pair.b);
+    for (auto* points : {&a, &b}) {
+      for (Vector3q& p : *points) p = exact::Transformed(R, p);
+    }
+    numeric::HullDistance distance;
+    Rational squared;
+    cgal.push_back(
+        MicrosecondsOf(1, [&] { squared = exact::SquaredConvexDistanceByQp(a, b).squared; }));
+    ours.push_back(MicrosecondsOf(
+        5, [&] { distance = numeric::SquaredConvexDistance(std::span(a), std::span(b)); }));
+    ratio.push_back(cgal.back() / ours.back());
+    wrong += distance.squared != squared;
+  }
+  std::fprintf(out, "%-24s %9.1f %9.2f %8.0fx   %6s %6s %6ld\n", name, Median(cgal), Median(ours),
+               Median(ratio), "", "", wrong);
+  return wrong;
+}
+
 long ReportExact(std::FILE* out, int count) {
   std::fprintf(out, "\nExact squared distance of convex hulls (us, medians; ratio of each pair)\n");
   std::fprintf(out, "%-24s %9s %9s %9s   %6s %6s %6s\n", "vertices, pairs", "CGAL", "ours", "ratio",
@@ -85,6 +111,11 @@ long ReportExact(std::FILE* out, int count) {
     std::vector<ConvexPair> pairs;
     for (int i = 0; i < count; ++i) pairs.push_back(MakeConvexPair(category, rng));
     wrong += ExactRow(out, NameOf(category), pairs);
+  }
+  for (const int vertices : {8, 20, 60}) {
+    std::vector<ConvexPair> pairs;
+    for (int i = 0; i < count / 2; ++i) pairs.push_back(TimedPair(rng, vertices, 0));
+    wrong += RationalRow(out, (std::to_string(vertices) + " apart, over Q").c_str(), pairs);
   }
   return wrong;
 }
