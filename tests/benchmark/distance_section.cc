@@ -5,10 +5,8 @@
 
 #include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/convex_distance.h"
-#include "cguide/numeric/triangle_distance.h"
 #include "tests/benchmark/timing.h"
 #include "tests/cases/placed_convex.h"
-#include "tests/cases/triangle_sets.h"
 #include "tests/peers/bullet_peer.h"
 #include "tests/peers/cgal_peer.h"
 #include "tests/peers/fcl_peer.h"
@@ -204,63 +202,36 @@ long ReportEnclosures(std::FILE* out, int count) {
   return wrong + EnclosureRow(out, "boxes", boxes);
 }
 
-struct MeshShape {
-  int rows;
-  int columns;
-  int twins;  // pairs compared with the textbook, which takes its time
-};
-
-long MeshRow(std::FILE* out, const MeshShape& shape, int count, std::mt19937_64& rng) {
-  std::vector<double> ours, fcl, textbook, ratio, rational;
-  long wrong = 0, pairs = 0, candidates = 0, features = 0;
+long DecisionRow(std::FILE* out, test::PairCategory category, double threshold, int count) {
+  std::mt19937_64 rng(static_cast<unsigned>(category) + 100);
+  std::vector<double> ours, textbook;
+  long wrong = 0, tried = 0;
   for (int i = 0; i < count; ++i) {
-    test::TriangleCase a = test::BumpySphere(rng, shape.rows, shape.columns, 0.3);
-    test::TriangleCase b = test::BumpySphere(rng, shape.rows, shape.columns, 0.3);
-    test::Move(&b, test::cases::Uniform(rng, 0.7, 1.1) * test::cases::Direction(rng));
-    const numeric::TriangleTree p(a.vertices, a.triangles), q(b.vertices, b.triangles);
-    const auto peer_a = peers::FclObject::Mesh(a.vertices, a.triangles),
-               peer_b = peers::FclObject::Mesh(b.vertices, b.triangles);
-    numeric::TriangleTreeDistance distance, turned;
-    exact::LinkPlacement X = exact::ExactPlacement({{0.1, 0.2, 0.3}, {0.3, -0.1, 0.7, 0.5}});
-    rational.push_back(
-        MicrosecondsOf(3, [&] { turned = SquaredTriangleDistance(p.Placed(X), q.Placed(X)); }));
-    fcl.push_back(MicrosecondsOf(3, [&] { sink = peers::FclDistance(peer_a, peer_b, 1e-6); }));
-    ours.push_back(MicrosecondsOf(3, [&] { distance = SquaredTriangleDistance(p, q); }));
-    ratio.push_back(ours.back() / fcl.back());
-    wrong += turned.squared != distance.squared;  // Motions keep distances, here exactly.
-    pairs += distance.pairs;
-    candidates += distance.candidates;
-    features += distance.features;
-    if (i >= shape.twins) continue;
-    const exact::LinkPlacement at = exact::ExactPlacement(Pose{});
-    const auto exact_a = exact::MakeTriangleSet(a.vertices, a.triangles, at),
-               exact_b = exact::MakeTriangleSet(b.vertices, b.triangles, at);
-    Rational squared;
-    textbook.push_back(MicrosecondsOf(
-        1, [&] { squared = exact::SquaredTriangleDistance(exact_a, exact_b).squared; }));
-    wrong += squared != distance.squared;
+    const ConvexPair pair = MakeConvexPair(category, rng);
+    const numeric::RoundedPoints a{pair.a, 0}, b{pair.b, 0};
+    const exact::RoundedHull p{Lifted(pair.a), 0}, q{Lifted(pair.b), 0};
+    Sign sign = Sign::kZero, truth = Sign::kZero;
+    ours.push_back(MicrosecondsOf(20, [&] { sign = numeric::CompareDistance(a, b, threshold); }));
+    textbook.push_back(
+        MicrosecondsOf(1, [&] { truth = exact::CompareDistance(p, q, Lift(threshold)); }));
+    tried += numeric::TryCompareDistance(a, b, threshold).has_value();
+    wrong += sign != truth;
   }
-  std::fprintf(out, "%-8d %10.0f %10.1f %10.1f %10.1f %8.2f   %8.1f %6.1f %6.1f %6ld\n",
-               2 * shape.columns * (shape.rows - 1), Median(textbook), Median(fcl), Median(ours),
-               Median(rational), Median(ratio), static_cast<double>(pairs) / count,
-               static_cast<double>(candidates) / count, static_cast<double>(features) / count,
-               wrong);
+  std::fprintf(out, "%-20s %6.2f %10.1f %8.2f %9.0f%% %6ld\n", NameOf(category), threshold,
+               Median(textbook), Median(ours), 100.0 * static_cast<double>(tried) / count, wrong);
   return wrong;
 }
 
-long ReportMeshes(std::FILE* out, int count) {
-  std::fprintf(
-      out,
-      "\nTriangle sets: exact squared distance, ours; FCL's float one (OBBRSS); the\n"
-      "textbook twin; ours after placing both by a rational motion (us, medians); ours / FCL;\n"
-      "pairs bounded, candidates, features\n");
-  std::fprintf(out, "%-8s %10s %10s %10s %10s %8s   %8s %6s %6s %6s\n", "faces", "textbook", "FCL",
-               "ours", "over Q", "ours/FCL", "pairs", "cand.", "feat.", "differ");
-  std::mt19937_64 rng(55);
+long ReportDecisions(std::FILE* out, int count) {
+  std::fprintf(out, "\nSign of d - t of sets of doubles (us, medians), decided in doubles alone\n");
+  std::fprintf(out, "%-20s %6s %10s %8s %10s %6s\n", "pairs", "t", "textbook", "ours", "doubles",
+               "differ");
   long wrong = 0;
-  for (const MeshShape& shape :
-       {MeshShape{3, 3, 20}, MeshShape{11, 10, 10}, MeshShape{26, 40, 2}}) {
-    wrong += MeshRow(out, shape, count, rng);
+  for (const auto category : {test::PairCategory::kRandom, test::PairCategory::kGridBoxes,
+                              test::PairCategory::kNearTouch, test::PairCategory::kThreshold}) {
+    for (const double threshold : {0.0, 0.01}) {
+      wrong += DecisionRow(out, category, threshold, 3 * count);
+    }
   }
   return wrong;
 }
@@ -358,7 +329,8 @@ long CompareTwins(std::FILE* out, int count) {
 long ReportDistances(std::FILE* out, const DistanceReportOptions& options) {
   long wrong = ReportExact(out, options.timing_pairs);
   wrong += ReportEnclosures(out, options.timing_pairs);
-  wrong += ReportMeshes(out, options.timing_pairs);
+  wrong += ReportDecisions(out, options.timing_pairs);
+  wrong += ReportTriangleDistances(out, options.timing_pairs);
   wrong += ReportVerdicts(out, options.verdict_pairs);
   if (options.twin_pairs > 0) wrong += CompareTwins(out, options.twin_pairs);
   return wrong;

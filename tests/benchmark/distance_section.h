@@ -15,4 +15,7 @@ struct DistanceReportOptions {
  timed is checked; returns the number of our own that were wrong. */
 long ReportDistances(std::FILE* out, const DistanceReportOptions& options = {});
 
+/** The part about triangle sets, against FCL's float answer and the textbook twin. */
+long ReportTriangleDistances(std::FILE* out, int count);
+
 }  // namespace cguide::benchmark_tools
