@@ -77,8 +77,9 @@ struct DistanceBounds {
 };
 
 /** Enclosure of the distance in doubles. Its width is some 1e-15 of the size of the sets and of
- their distance where the iteration converged; a poor proposal widens it. Where doubles cannot carry
- a bound (coordinates beyond 2^60, distances below 1e-140) it is [0, infinity].
+ their distance where the iteration converged; a poor proposal widens it, and where the sets overlap
+ by less than some 1e-8 of their size hi may stay above 0. It is [0, infinity] where a coordinate
+ exceeds 2^60; distances below 1e-140 have lo = 0.
  @throws Error as above. */
 DistanceBounds BoundConvexDistance(std::span<const Eigen::Vector3d> a,
                                    std::span<const Eigen::Vector3d> b);

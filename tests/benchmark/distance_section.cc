@@ -312,7 +312,15 @@ long CompareTwins(std::FILE* out, int count) {
   for (int i = 0; i < count; ++i) {
     const ConvexPair pair = MakeConvexPair(test::kPairCategories[i % 9], rng);
     const auto distance = numeric::SquaredConvexDistance(std::span(pair.a), std::span(pair.b));
-    wrong += distance.squared != SquaredTruth(pair);
+    const Rational truth = SquaredTruth(pair);
+    wrong += distance.squared != truth;
+    const numeric::DistanceBounds bounds = numeric::BoundConvexDistance(pair.a, pair.b);
+    wrong += Lift(bounds.lo) * Lift(bounds.lo) > truth || Lift(bounds.hi) * Lift(bounds.hi) < truth;
+    const numeric::RoundedPoints a{pair.a, 0}, b{pair.b, 0};
+    const double near = std::sqrt(NearestDouble(truth));  // the hardest threshold
+    const Sign sign = SignOf(Rational(truth - Lift(near) * Lift(near)));
+    const auto tried = numeric::TryCompareDistance(a, b, near);
+    wrong += (tried && *tried != sign) || numeric::CompareDistance(a, b, near) != sign;
     filtered += distance.rounds == 0 && distance.exact_signs == 0;
     settled += distance.rounds == 0 && distance.exact_signs > 0;
     refined += distance.rounds > 0;
