@@ -135,6 +135,10 @@ DirectedClearance ConvexClearance(const Convex& a, const Convex& b, double cutof
   TryPoints(a, b, a.c + gjk.a - a.radius * n, b.c + gjk.b + b.radius * n, &result);
   TryDirection(a, b, n, &result);
   if (result.hi - result.lo > 4 * error) {
+    const Vector3d normal = SimplexNormal(gjk);
+    if (!normal.isZero(0)) TryDirection(a, b, normal, &result);
+  }
+  if (result.hi - result.lo > 4 * error) {
     for (int code = 0; code < 6; ++code) {
       TryDirection(a, b, HintDirection(a, b, {static_cast<signed char>(code), Vector3d::Zero()}),
                    &result);

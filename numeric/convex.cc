@@ -111,6 +111,7 @@ Vector3d CoreSupport(const Convex& s, const Vector3d& n) {
     case CoreKind::kPoints:
       break;
   }
+  if (s.lanes) return s.R * s.points[s.lanes->Farthest(l)];
   int best = 0;
   double value = -INFINITY;
   for (int i = 0; i < s.num_points; ++i) {

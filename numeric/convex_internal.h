@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "cguide/numeric/point_lanes_internal.h"
+
 namespace cguide::numeric {
 
 /** Unit roundoff of double, 2^-53. */
@@ -32,6 +34,7 @@ struct Convex {
   double error = 0;
   const Eigen::Vector3d* points = nullptr;  ///< relative to c, in the axes R
   int num_points = 0;
+  const PointLanes* lanes = nullptr;          ///< the same points for fast scans, or null
   const std::array<int, 3>* faces = nullptr;  ///< only handed on to FCL
   int num_faces = 0;
   CoreKind kind = CoreKind::kBox;
@@ -71,6 +74,7 @@ inline double CoreExtent(const Convex& s, const Eigen::Vector3d& n) {
     case CoreKind::kPoints:
       break;
   }
+  if (s.lanes) return s.lanes->Greatest(l);
   double best = -INFINITY;
   for (int i = 0; i < s.num_points; ++i) best = std::max(best, l.dot(s.points[i]));
   return best;

@@ -126,12 +126,21 @@ struct ShapeMaker {
   void operator()(const Hull& b) const { SetPoints(X, b, points, faces, s); }
 };
 
-void Refer(const std::vector<Vector3d>& points, const std::vector<std::array<int, 3>>& faces,
-           Convex* s) {
+// From so many points on a scan of lanes is the faster one.
+constexpr int kManyPoints = 8;
+
+template <typename Shape>
+void Refer(Shape* owner, Convex* s) {
+  const std::vector<Vector3d>& points = owner->points;
+  const std::vector<std::array<int, 3>>& faces = owner->faces;
   s->points = points.data();
   s->num_points = static_cast<int>(points.size());
   s->faces = faces.data();
   s->num_faces = static_cast<int>(faces.size());
+  if (s->num_points >= kManyPoints) {
+    owner->lanes = std::make_unique<PointLanes>(points);
+    s->lanes = owner->lanes.get();
+  }
 }
 
 void MakeHalfspace(const ExactPose& X, const Halfspace& h, ObstaclePiece* piece) {
@@ -177,7 +186,7 @@ struct PieceMaker {
   template <typename Shape>
   void operator()(const Shape& shape) const {
     ShapeMaker{X, &piece->points, &piece->faces, &piece->convex}(shape);
-    Refer(piece->points, piece->faces, &piece->convex);
+    Refer(piece, &piece->convex);
   }
   void operator()(const Halfspace& h) const { MakeHalfspace(X, h, piece); }
   void operator()(const Surface& m) const { MakeMesh(X, m.vertices, m.triangles, false, piece); }
@@ -219,7 +228,7 @@ void AddShapes(const Robot& robot, const std::vector<ExactPose>& X_BL, Geometry*
     g->body_balls.push_back(Enclose(balls));
   }
   g->body_begin.push_back(static_cast<int>(g->shapes.size()));
-  for (BodyShape& s : g->shapes) Refer(s.points, s.faces, &s.local);
+  for (BodyShape& s : g->shapes) Refer(&s, &s.local);
 }
 
 void AddPieces(const Model& model, Geometry* g) {

@@ -19,6 +19,7 @@ struct BodyShape {
   double L = 0;  ///< |local.c| + local.reach
   std::vector<Eigen::Vector3d> points;
   std::vector<std::array<int, 3>> faces;
+  std::unique_ptr<PointLanes> lanes;  ///< of hulls with many points
 };
 
 /** A ball about the shapes of a body, in its frame. */
@@ -39,6 +40,7 @@ struct ObstaclePiece {
   std::unique_ptr<Mesh> mesh;
   std::vector<Eigen::Vector3d> points;
   std::vector<std::array<int, 3>> faces;
+  std::unique_ptr<PointLanes> lanes;  ///< of hulls with many points
 };
 
 /** A contact site in its body's frame. */

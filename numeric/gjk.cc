@@ -70,18 +70,26 @@ bool InsideTetrahedron(const DifferencePoint* s, Candidate* inside) {
   return true;
 }
 
-// The best of all faces: every vertex, edge and triangle is tried, which costs little and needs no
-// assumption about where the origin can be, so a flat simplex does no harm.
+// The best of the faces that hold the newest point: the point nearest to the origin has left the
+// old simplex, because the newest one is strictly on the origin's side of it. No region is ruled
+// out beforehand, so a flat simplex does no harm.
+Candidate ClosestNewFace(const DifferencePoint* s, int n) {
+  Candidate best;
+  const int last = n - 1;
+  OfferVertex(s, last, &best);
+  for (int i = 0; i < last; ++i) OfferEdge(s, i, last, &best);
+  for (int i = 0; i < last; ++i) {
+    for (int j = i + 1; j < last; ++j) OfferTriangle(s, i, j, last, &best);
+  }
+  return best;
+}
+
+// The best of all faces, for when rounding has made the above untrue.
 Candidate ClosestFace(const DifferencePoint* s, int n) {
   Candidate best;
-  for (int i = 0; i < n; ++i) OfferVertex(s, i, &best);
-  for (int i = 0; i < n; ++i) {
-    for (int j = i + 1; j < n; ++j) OfferEdge(s, i, j, &best);
-  }
-  for (int i = 0; i < n; ++i) {
-    for (int j = i + 1; j < n; ++j) {
-      for (int k = j + 1; k < n; ++k) OfferTriangle(s, i, j, k, &best);
-    }
+  for (int size = 1; size <= n; ++size) {
+    const Candidate candidate = ClosestNewFace(s, size);
+    if (candidate.squared < best.squared) best = candidate;
   }
   return best;
 }
@@ -108,19 +116,14 @@ void Reduce(const Candidate& c, GjkResult* r) {
   std::copy(kept, kept + c.size, r->simplex);
 }
 
-}  // namespace
-
-void Gjk(const Convex& a, const Convex& b, const Vector3d& v0, double enough, GjkResult* r) {
-  const Vector3d offset = a.c - b.c;
-  const double tiny = 4 * kUnit * (offset.norm() + a.reach + b.reach);
+template <typename Support>
+void Iterate(const Support& support, const Vector3d& v0, double tiny, double enough, GjkResult* r) {
   r->v = v0.squaredNorm() > 0 ? v0 : Vector3d::UnitX();
   r->size = 0;
   double best = INFINITY;
   for (r->iterations = 0; r->iterations < kMaxIterations; ++r->iterations) {
     DifferencePoint p;
-    p.a = CoreSupport(a, -r->v);
-    p.b = CoreSupport(b, r->v);
-    p.w = offset + p.a - p.b;
+    support(r->v, &p);
     const double bound = r->v.dot(p.w), squared = r->v.squaredNorm();
     if (bound > 0 && bound * bound > enough * enough * squared) {
       r->separated = true;
@@ -135,7 +138,8 @@ void Gjk(const Convex& a, const Convex& b, const Vector3d& v0, double enough, Gj
       r->overlap = true;
       return;
     }
-    const Candidate face = ClosestFace(r->simplex, r->size);
+    Candidate face = ClosestNewFace(r->simplex, r->size);
+    if (face.squared >= best) face = ClosestFace(r->simplex, r->size);
     if (r->iterations > 0 && face.squared >= best) {
       r->size -= 1;  // No progress: rounding rules from here. v still belongs to the old simplex.
       return;
@@ -147,6 +151,56 @@ void Gjk(const Convex& a, const Convex& b, const Vector3d& v0, double enough, Gj
       return;
     }
   }
+}
+
+}  // namespace
+
+void Gjk(const Convex& a, const Convex& b, const Vector3d& v0, double enough, GjkResult* r) {
+  const Vector3d offset = a.c - b.c;
+  const auto support = [&](const Vector3d& v, DifferencePoint* p) {
+    p->a = CoreSupport(a, -v);
+    p->b = CoreSupport(b, v);
+    p->w = offset + p->a - p->b;
+  };
+  Iterate(support, v0, 4 * kUnit * (offset.norm() + a.reach + b.reach), enough, r);
+}
+
+Vector3d SimplexNormal(const GjkResult& gjk) {
+  const auto edge = [&gjk](int k) -> Vector3d {
+    const DifferencePoint &p = gjk.simplex[0], &q = gjk.simplex[k];
+    return (q.a - p.a) - (q.b - p.b);
+  };
+  if (gjk.size < 2 || gjk.size > 3) return Vector3d::Zero();
+  const Vector3d e = edge(1);
+  Vector3d n = gjk.size == 3 ? e.cross(edge(2)) : e.cross(gjk.simplex[0].w.cross(e));
+  if (n.dot(gjk.simplex[0].w) < 0) n = -n;
+  const double length = n.norm();
+  return length > 1e-140 ? Vector3d(n / length) : Vector3d(Vector3d::Zero());
+}
+
+int Farthest(const PointSet& set, const Vector3d& n) {
+  if (set.lanes) return set.lanes->Farthest(n);
+  int best = 0;
+  double value = -INFINITY;
+  for (int i = 0; i < static_cast<int>(set.points.size()); ++i) {
+    const double dot = n.dot(set.points[i]);
+    if (dot > value) {
+      value = dot;
+      best = i;
+    }
+  }
+  return best;
+}
+
+void Gjk(const PointSet& a, const PointSet& b, const Vector3d& v0, double enough, GjkResult* r) {
+  const auto support = [&](const Vector3d& v, DifferencePoint* p) {
+    p->i = Farthest(a, -v);
+    p->j = Farthest(b, v);
+    p->a = a.points[p->i];
+    p->b = b.points[p->j];
+    p->w = p->a - p->b;
+  };
+  Iterate(support, v0, 0, enough, r);
 }
 
 }  // namespace cguide::numeric
