@@ -270,6 +270,14 @@ TaylorVector<N> PointOnBody(const TaylorPose<N>& X_WB, const Vector3d& p_B) {
 }
 
 template <int N>
+TaylorVector<N> VectorOnBody(const TaylorPose<N>& X_WB, const Vector3d& v_B) {
+  TaylorVector<N> v_W = Combine<N>(X_WB.R, v_B, nullptr);
+  v_W.r.template head<3>() += X_WB.error_R * v_B.template lpNorm<1>() * kUp;
+  v_W.r *= kUp;
+  return v_W;
+}
+
+template <int N>
 void EvaluateEdge(const KinematicTree& tree, const Edge& edge, const Leaf& leaf,
                   TaylorState<N>* state) {
   Require(edge.from.joints.size() == tree.num_columns && edge.to.joints.size() == tree.num_columns,
@@ -284,13 +292,14 @@ void EvaluateEdge(const KinematicTree& tree, const Edge& edge, const Leaf& leaf,
   PlaceCom<N>(tree, state);
 }
 
-template void EvaluateEdge<0>(const KinematicTree&, const Edge&, const Leaf&, TaylorState<0>*);
-template void EvaluateEdge<1>(const KinematicTree&, const Edge&, const Leaf&, TaylorState<1>*);
-template void EvaluateEdge<2>(const KinematicTree&, const Edge&, const Leaf&, TaylorState<2>*);
-template void EvaluateEdge<3>(const KinematicTree&, const Edge&, const Leaf&, TaylorState<3>*);
-template TaylorVector<0> PointOnBody<0>(const TaylorPose<0>&, const Vector3d&);
-template TaylorVector<1> PointOnBody<1>(const TaylorPose<1>&, const Vector3d&);
-template TaylorVector<2> PointOnBody<2>(const TaylorPose<2>&, const Vector3d&);
-template TaylorVector<3> PointOnBody<3>(const TaylorPose<3>&, const Vector3d&);
+#define CGUIDE_INSTANTIATE(N)                                                                     \
+  template void EvaluateEdge<N>(const KinematicTree&, const Edge&, const Leaf&, TaylorState<N>*); \
+  template TaylorVector<N> PointOnBody<N>(const TaylorPose<N>&, const Vector3d&);                 \
+  template TaylorVector<N> VectorOnBody<N>(const TaylorPose<N>&, const Vector3d&);
+CGUIDE_INSTANTIATE(0)
+CGUIDE_INSTANTIATE(1)
+CGUIDE_INSTANTIATE(2)
+CGUIDE_INSTANTIATE(3)
+#undef CGUIDE_INSTANTIATE
 
 }  // namespace cguide::verify

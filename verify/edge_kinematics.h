@@ -46,4 +46,8 @@ void EvaluateEdge(const numeric::KinematicTree& tree, const Edge& edge, const Le
 template <int N>
 TaylorVector<N> PointOnBody(const TaylorPose<N>& X_WB, const Eigen::Vector3d& p_B);
 
+/** R_WB(s) v of a vector fixed on a body, likewise. */
+template <int N>
+TaylorVector<N> VectorOnBody(const TaylorPose<N>& X_WB, const Eigen::Vector3d& v_B);
+
 }  // namespace cguide::verify

@@ -137,19 +137,40 @@ struct Range {
   double hi = 0;
 };
 
-/** Bounds of the values over all t in [-1, 1]: odd powers sweep [-1, 1], even ones [0, 1]. At most
- N + 3 roundings of sums no larger than Magnitude(a) + a.r. */
+namespace taylor_internal {
+/** min of c0 + c1 t + c2 t^2 over [-1, 1] in floats: at the vertex c0 - c1^2/(4 c2) where that is a
+ minimum inside, else at an end. */
+inline double QuadraticMinimum(double c0, double c1, double c2) {
+  const double slope = std::abs(c1);
+  return c2 > 0 && slope < 2 * c2 ? c0 - slope * slope / (4 * c2) : c0 - slope + c2;
+}
+}  // namespace taylor_internal
+
+/** A lower bound of the values over all t in [-1, 1]. The parabola is bounded exactly, odd powers
+ beyond it sweep [-1, 1], even ones [0, 1]: fewer than 2 N + 8 roundings, none of more than twice
+ Magnitude(a) + a.r. */
 template <int N>
-Range RangeOf(const TaylorModel<N>& a) {
-  double lo = a.c[0], hi = a.c[0], magnitude = std::abs(a.c[0]);
-  for (int k = 1; k <= N; ++k) {
+double LowerBound(const TaylorModel<N>& a) {
+  double lo = taylor_internal::QuadraticMinimum(a.c[0], N >= 1 ? a.c[N >= 1 ? 1 : 0] : 0.0,
+                                                N >= 2 ? a.c[N >= 2 ? 2 : 0] : 0.0);
+  double magnitude = a.r;
+  for (int k = 0; k <= N; ++k) {
     const double size = std::abs(a.c[k]);
     magnitude += size;
-    if (k % 2 == 1 || a.c[k] < 0) lo -= size;
-    if (k % 2 == 1 || a.c[k] > 0) hi += size;
+    if (k > 2 && (k % 2 == 1 || a.c[k] < 0)) lo -= size;
   }
-  const double slack = (a.r + (2 * N + 4) * kUnit * (magnitude + a.r)) * kUp;
-  return {lo - slack, hi + slack};
+  return lo - (a.r + (4 * N + 16) * kUnit * magnitude) * kUp;
+}
+
+template <int N>
+double UpperBound(const TaylorModel<N>& a) {
+  return -LowerBound(-a);
+}
+
+/** Bounds of the values over all t in [-1, 1]. */
+template <int N>
+Range RangeOf(const TaylorModel<N>& a) {
+  return {LowerBound(a), UpperBound(a)};
 }
 
 /** Coordinate `lane` of a moving point. */
