@@ -13,6 +13,7 @@
 #include "cguide/planner/endpoint.h"
 #include "cguide/planner/rrt.h"
 #include "cguide/verify/edge_collision.h"
+#include "cguide/verify/edge_stability.h"
 
 namespace {
 
@@ -102,6 +103,30 @@ void ReportCollisions(const numeric::World& world, const std::vector<Edge>& edge
               Mean(sampled) / Mean(certified));
 }
 
+void ReportStability(const numeric::World& world, const std::vector<Edge>& edges) {
+  verify::StabilityEdgeWorkspace workspace(world);
+  std::vector<double> certified;
+  long leaves = 0, holds = 0, fails = 0;
+  for (const Edge& edge : edges) {
+    verify::EdgeStability result;
+    certified.push_back(
+        TimeOf(1, [&] { result = DecideEdgeStability(world, edge, {}, &workspace); }));
+    leaves += result.leaves;
+    holds += result.verdict == Verdict::kHolds;
+    fails += result.verdict == Verdict::kFails;
+    if (result.verdict == Verdict::kUndecided) {
+      std::printf("  undecided at s = %.9f: %s (%ld leaves)\n", result.s, result.reason.c_str(),
+                  result.leaves);
+    }
+  }
+  const double n = static_cast<double>(edges.size());
+  std::printf("contact and balance of the same edges: %ld hold, %ld fail, %ld undecided\n", holds,
+              fails, static_cast<long>(edges.size()) - holds - fails);
+  std::printf("  whole edge: mean %.0f us, median %.0f us, 95th percentile %.0f us; %.1f leaves\n",
+              Mean(certified), Quantile(certified, 0.5), Quantile(certified, 0.95),
+              static_cast<double>(leaves) / n);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -123,4 +148,5 @@ int main(int argc, char** argv) {
   ReportKinematics<2>(world, edges[0], plain);
   ReportKinematics<3>(world, edges[0], plain);
   ReportCollisions(world, edges);
+  ReportStability(world, edges);
 }
