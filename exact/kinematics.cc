@@ -112,25 +112,91 @@ LinkPlacement ToPlacement(const Frame& X) {
   return result;
 }
 
-}  // namespace
+using MpQuaternion = std::array<MpInterval, 4>;  // x, y, z, w
 
-Rational JointValue(const Robot& robot, const Configuration& q, int joint) {
-  const Joint& j = robot.joints.at(static_cast<std::size_t>(joint));
-  if (j.type == JointType::kFixed) return 0;
-  if (!j.mimic) return Lift(q.joints[j.column]);
-  const Joint& master = robot.joints.at(static_cast<std::size_t>(j.mimic->joint));
-  return Lift(j.mimic->multiplier) * Lift(q.joints[master.column]) + Lift(j.mimic->offset);
+std::array<Rational, 4> Coefficients(const Quaternion& q) {
+  return {Lift(q.x), Lift(q.y), Lift(q.z), Lift(q.w)};
 }
 
-RobotPlacement PlaceRobot(const Robot& robot, const Configuration& q, int bits) {
-  Require(bits >= 32 && bits <= 1 << 20, "the precision must be between 32 and 2^20 bits");
-  Require(q.joints.size() == robot.num_columns, "one joint value per column is needed");
-  std::vector<Frame> frames{Enclose(q.X_WB, bits)};
+/** q/|q|, each component +- sqrt(q_i^2/|q|^2). */
+MpQuaternion Normalised(const std::array<Rational, 4>& q, int bits) {
+  Rational norm = 0;
+  for (const Rational& x : q) norm += x * x;
+  Require(norm != 0, "the quaternion of a pose must not vanish");
+  MpQuaternion unit;
+  for (int k = 0; k < 4; ++k) {
+    const MpInterval size = Sqrt(MpInterval(Rational(q[k] * q[k] / norm), bits));
+    unit[k] = q[k] < 0 ? -size : size;
+  }
+  return unit;
+}
+
+MpInterval Length(const MpQuaternion& q) {
+  MpInterval sum(Rational(0), q[0].Bits());
+  for (const MpInterval& x : q) sum = sum + (x * x).NonNegative();
+  return Sqrt(sum);
+}
+
+/** sin(s angle)/sin(angle) a + ... for unit a, b with a.b > 0. With t = 2 atan2(|b - a|, |b + a|)
+ the angle between them. Where sin t cannot be told from 0 every point of the arc is within t of a.
+ */
+MpQuaternion Slerp(const MpQuaternion& a, const MpQuaternion& b, const Rational& s, int bits) {
+  MpQuaternion sum, difference, result;
+  for (int k = 0; k < 4; ++k) {
+    sum[k] = a[k] + b[k];
+    difference[k] = b[k] + -a[k];
+  }
+  const MpInterval angle = MpInterval(Rational(2), bits) * Atan2(Length(difference), Length(sum));
+  const MpInterval sine = Sin(angle);
+  if (!sine.IsPositive()) {
+    for (int k = 0; k < 4; ++k) result[k] = a[k].WidenedBy(angle);
+    return result;
+  }
+  const MpInterval from = Sin(MpInterval(Rational(1 - s), bits) * angle) / sine;
+  const MpInterval to = Sin(MpInterval(s, bits) * angle) / sine;
+  for (int k = 0; k < 4; ++k) result[k] = from * a[k] + to * b[k];
+  return result;
+}
+
+/** The rotation of a quaternion that is known to have norm 1. */
+MpMatrix UnitRotation(const MpQuaternion& q, int bits) {
+  const auto& [x, y, z, w] = q;
+  const MpInterval two(Rational(2), bits), one(Rational(1), bits);
+  const auto diagonal = [&](const MpInterval& a, const MpInterval& b) {
+    return one + -(two * (a * a + b * b));
+  };
+  const auto plus = [&](const MpInterval& ab, const MpInterval& wc) { return two * (ab + wc); };
+  return {MpVector{diagonal(y, z), plus(x * y, -(w * z)), plus(x * z, w * y)},
+          MpVector{plus(x * y, w * z), diagonal(x, z), plus(y * z, -(w * x))},
+          MpVector{plus(x * z, -(w * y)), plus(y * z, w * x), diagonal(x, y)}};
+}
+
+Frame RootOnEdge(const Edge& edge, const Rational& s, int bits) {
+  const Pose &from = edge.from.X_WB, &to = edge.to.X_WB;
+  const std::array<Rational, 4> a = Coefficients(from.q);
+  std::array<Rational, 4> b = Coefficients(to.q);
+  Rational dot = 0;
+  for (int k = 0; k < 4; ++k) dot += a[k] * b[k];
+  Require(dot != 0, "the end orientations are half a turn apart; the shorter arc is not defined");
+  if (dot < 0) {
+    for (Rational& x : b) x = -x;
+  }
+  const Vector3q p0 = Lift(from.p), p1 = Lift(to.p);
+  Frame root;
+  root.R = UnitRotation(Slerp(Normalised(a, bits), Normalised(b, bits), s, bits), bits);
+  root.p = Enclose(Vector3q(p0 + Scaled(s, p1 - p0)), bits);
+  return root;
+}
+
+/** The robot with its root at `root` and joint i at value(i). */
+template <typename Value>
+RobotPlacement Place(const Robot& robot, const Frame& root, const Value& value, int bits) {
+  std::vector<Frame> frames{root};
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const Joint& joint = robot.joints[i];
     // The narrow factors first: each product with the parent's frame widens it by up to sqrt 3.
-    const Frame X_PC = Enclose(joint.X_PJ, bits) *
-                       JointMotion(joint, JointValue(robot, q, static_cast<int>(i)), bits);
+    const Frame X_PC =
+        Enclose(joint.X_PJ, bits) * JointMotion(joint, value(static_cast<int>(i)), bits);
     frames.push_back(frames[joint.parent] * X_PC);
   }
   RobotPlacement result;
@@ -149,6 +215,43 @@ RobotPlacement PlaceRobot(const Robot& robot, const Configuration& q, int bits) 
   result.com = Middle(com);
   result.com_error = Radius(com);
   return result;
+}
+
+void RequireBits(int bits) {
+  Require(bits >= 32 && bits <= 1 << 20, "the precision must be between 32 and 2^20 bits");
+}
+
+}  // namespace
+
+Rational JointValue(const Robot& robot, const Configuration& q, int joint) {
+  const Joint& j = robot.joints.at(static_cast<std::size_t>(joint));
+  if (j.type == JointType::kFixed) return 0;
+  if (!j.mimic) return Lift(q.joints[j.column]);
+  const Joint& master = robot.joints.at(static_cast<std::size_t>(j.mimic->joint));
+  return Lift(j.mimic->multiplier) * Lift(q.joints[master.column]) + Lift(j.mimic->offset);
+}
+
+Rational JointValue(const Robot& robot, const Edge& edge, const Rational& s, int joint) {
+  const Rational from = JointValue(robot, edge.from, joint);
+  return from + s * (JointValue(robot, edge.to, joint) - from);
+}
+
+RobotPlacement PlaceRobot(const Robot& robot, const Configuration& q, int bits) {
+  RequireBits(bits);
+  Require(q.joints.size() == robot.num_columns, "one joint value per column is needed");
+  return Place(
+      robot, Enclose(q.X_WB, bits), [&](int joint) { return JointValue(robot, q, joint); }, bits);
+}
+
+RobotPlacement PlaceRobot(const Robot& robot, const Edge& edge, const Rational& s, int bits) {
+  RequireBits(bits);
+  Require(
+      edge.from.joints.size() == robot.num_columns && edge.to.joints.size() == robot.num_columns,
+      "one joint value per column is needed");
+  Require(s >= 0 && s <= 1, "s must lie in [0, 1]");
+  return Place(
+      robot, RootOnEdge(edge, s, bits),
+      [&](int joint) { return JointValue(robot, edge, s, joint); }, bits);
 }
 
 LinkPlacement ExactPlacement(const Pose& X) { return {RotationOf(X.q), Lift(X.p), 0, 0}; }

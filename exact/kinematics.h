@@ -36,12 +36,19 @@ struct RobotPlacement {
  @throws Error where q does not fit the robot, has a number that is not finite, or bits < 32. */
 RobotPlacement PlaceRobot(const Robot& robot, const Configuration& q, int bits);
 
+/** The same on an edge at s in [0,1] (DESIGN part 2): root position and joints linear in the stored
+ doubles, orientation SLERP between the normalised ends on the shorter arc.
+ @throws Error also where the end orientations are half a turn apart (q0.q1 = 0), or s is not in
+ [0,1]. */
+RobotPlacement PlaceRobot(const Robot& robot, const Edge& edge, const Rational& s, int bits);
+
 /** A pose that is exact: pieces of objects, shapes in their link. error_R = error_p = 0. */
 LinkPlacement ExactPlacement(const Pose& X);
 
 /** The exact value of a joint: the column's, or multiplier * value + offset for a mimic joint; 0
  for a fixed one. */
 Rational JointValue(const Robot& robot, const Configuration& q, int joint);
+Rational JointValue(const Robot& robot, const Edge& edge, const Rational& s, int joint);
 
 /** Whether every joint, mimic joints included, is within its closed limits: an exact comparison. */
 bool WithinLimits(const Robot& robot, const Configuration& q);

@@ -68,6 +68,39 @@ class MpInterval {
     return c;
   }
 
+  /** a/b for b > 0 throughout. */
+  friend MpInterval operator/(const MpInterval& a, const MpInterval& b) {
+    MpInterval c(std::max(a.Bits(), b.Bits())), inverse(c.Bits());
+    mpfr_ui_div(inverse.lo_, 1, b.hi_, MPFR_RNDD);
+    mpfr_ui_div(inverse.hi_, 1, b.lo_, MPFR_RNDU);
+    return a * inverse;
+  }
+
+  /** The angle of (x, y) for x > 0 and y >= 0 throughout: it rises with y and falls with x. */
+  friend MpInterval Atan2(const MpInterval& y, const MpInterval& x) {
+    MpInterval c(std::max(x.Bits(), y.Bits()));
+    mpfr_atan2(c.lo_, y.lo_, x.hi_, MPFR_RNDD);
+    mpfr_atan2(c.hi_, y.hi_, x.lo_, MPFR_RNDU);
+    return c;
+  }
+
+  /** The part of the interval in [0, inf), where it has one. */
+  MpInterval NonNegative() const {
+    MpInterval c = *this;
+    if (mpfr_sgn(c.lo_) < 0) mpfr_set_zero(c.lo_, 1);
+    return c;
+  }
+
+  /** a widened by x >= 0 on either side. */
+  MpInterval WidenedBy(const MpInterval& x) const {
+    MpInterval c = *this;
+    mpfr_sub(c.lo_, lo_, x.hi_, MPFR_RNDD);
+    mpfr_add(c.hi_, hi_, x.hi_, MPFR_RNDU);
+    return c;
+  }
+
+  bool IsPositive() const { return mpfr_sgn(lo_) > 0; }
+
   /** sqrt of an interval within [0, inf). */
   friend MpInterval Sqrt(const MpInterval& a) {
     MpInterval c(a.Bits());

@@ -41,6 +41,10 @@ Workspace& Workspace::operator=(Workspace&&) noexcept = default;
 
 void Place(const World& world, const Configuration& q, Workspace* workspace) {
   ForwardKinematics(world.tree(), q, &workspace->state);
+  PlaceFromState(world, workspace);
+}
+
+void PlaceFromState(const World& world, Workspace* workspace) {
   const Geometry& geometry = world.geometry();
   const KinematicState& state = workspace->state;
   Workspace::Scratch& scratch = *workspace->scratch;

@@ -52,6 +52,10 @@ class Workspace {
  below is about the configuration placed last. */
 void Place(const World& world, const Configuration& q, Workspace* workspace);
 
+/** The same from workspace->state as the caller filled it, bounds included: for placements that no
+ double configuration gives, such as a point of an edge. */
+void PlaceFromState(const World& world, Workspace* workspace);
+
 /** Two things that must keep apart: a body and an object, or (self) two bodies. */
 struct Pair {
   int body = -1;

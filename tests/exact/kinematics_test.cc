@@ -165,4 +165,35 @@ TEST_CASE("Configurations that do not fit the robot are refused") {
   CHECK_THROWS_AS(PlaceRobot(robot, q, 106), Error);
 }
 
+TEST_CASE("An edge meets its waypoints at both ends and its double interpolation between") {
+  std::mt19937 rng(11);
+  for (int round = 0; round < 20; ++round) {
+    const Robot robot = MakeChain(rng, 8);
+    Edge edge{RandomConfiguration(robot, rng), RandomConfiguration(robot, rng)};
+    if (round % 4 == 0) edge.to.X_WB.q = edge.from.X_WB.q;
+    for (const double s : {0.0, 0.3, 1.0}) {
+      const RobotPlacement on_edge = PlaceRobot(robot, edge, Lift(s), 128);
+      const RobotPlacement at = PlaceRobot(robot, Interpolate(edge, s), 128);
+      // Interpolated doubles are within a few ulps of the real point; waypoints are not rounded.
+      const Rational slack = s == 0 || s == 1 ? Rational(0) : Lift(1e-12);
+      REQUIRE(Near(on_edge.com, at.com, on_edge.com_error + at.com_error + slack));
+      REQUIRE(on_edge.com_error < Lift(1e-30));
+    }
+  }
+}
+
+TEST_CASE("An edge that turns by less than doubles can tell is placed between its ends") {
+  std::mt19937 rng(12);
+  const Robot robot = MakeChain(rng, 3);
+  Edge edge{RandomConfiguration(robot, rng), {}};
+  edge.to = edge.from;
+  edge.from.X_WB.q = {0.1, 0.2, 0.3, 0.9};
+  edge.to.X_WB.q = {0.3 * 0.1, 0.3 * 0.2, 0.3 * 0.3, 0.3 * 0.9};  // parallel up to rounding
+  const RobotPlacement wide = PlaceRobot(robot, edge, Rational(1, 2), 40);
+  const RobotPlacement narrow = PlaceRobot(robot, edge, Rational(1, 2), 300);
+  REQUIRE(Near(wide.com, narrow.com, wide.com_error + narrow.com_error));
+  edge.to.X_WB.q = {-0.2, 0.1, 0.9, -0.3};
+  REQUIRE_THROWS_AS(PlaceRobot(robot, edge, Rational(3, 2), 64), Error);
+}
+
 }  // namespace cguide::exact

@@ -1,0 +1,152 @@
+// The cost of certifying the edges of guides, against sampling them: kinematics over a leaf, and
+// freedom from collisions over whole edges. One thread, one run; medians of CPU time.
+//   edge_benchmark [PROBLEM] [SEEDS]
+#include <time.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "cguide/numeric/io/problem_reader.h"
+#include "cguide/numeric/sampled_edge.h"
+#include "cguide/planner/endpoint.h"
+#include "cguide/planner/rrt.h"
+#include "cguide/verify/edge_collision.h"
+#include "cguide/verify/edge_stability.h"
+
+namespace {
+
+using namespace cguide;  // NOLINT: a program of one file
+
+double Microseconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+}
+
+template <typename Work>
+double TimeOf(int repeats, const Work& work) {
+  const double start = Microseconds();
+  for (int i = 0; i < repeats; ++i) work();
+  return (Microseconds() - start) / repeats;
+}
+
+double Quantile(std::vector<double> x, double p) {
+  std::sort(x.begin(), x.end());
+  return x[static_cast<std::size_t>(p * static_cast<double>(x.size() - 1))];
+}
+
+double Mean(const std::vector<double>& x) {
+  double sum = 0;
+  for (const double v : x) sum += v;
+  return sum / static_cast<double>(x.size());
+}
+
+std::vector<Edge> GuideEdges(const numeric::Problem& problem, const numeric::World& world,
+                             int seeds) {
+  planner::ProjectionWorkspace workspace(world);
+  const auto start = planner::PrepareEndpoint(world, problem.start, numeric::Space::kGuide, "start",
+                                              {}, &workspace);
+  const auto goal =
+      planner::PrepareEndpoint(world, problem.goal, numeric::Space::kGuide, "goal", {}, &workspace);
+  const EdgeOracle oracle = numeric::MakeSampledOracle(world, {.step = 0.005});
+  std::vector<Edge> edges;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    planner::RunOptions run;
+    run.seed = static_cast<std::uint64_t>(seed);
+    run.time_limit_s = 30;
+    const auto result = planner::PlanRrt(world, problem.sampling, start.q, goal.q, oracle, {}, run);
+    const auto& q = result.waypoints;
+    for (std::size_t i = 0; i + 1 < q.size(); ++i) edges.push_back(Edge{q[i], q[i + 1]});
+  }
+  return edges;
+}
+
+template <int N>
+void ReportKinematics(const numeric::World& world, const Edge& edge, double plain) {
+  verify::TaylorState<N> placed;
+  const double us = TimeOf(2000, [&] {
+    verify::EvaluateEdge<N>(world.tree(), edge, {0.5 + 0x1p-6, 0x1p-6}, &placed);
+  });
+  std::printf(
+      "  degree %d: %.2f us (%.1f plain evaluations), remainder of the centre of mass %.1e m\n", N,
+      us, us / plain, placed.com_W.r.maxCoeff());
+}
+
+void ReportCollisions(const numeric::World& world, const std::vector<Edge>& edges) {
+  verify::EdgeWorkspace workspace(world);
+  numeric::GuideWorkspace sampling(world);
+  std::vector<double> certified, sampled;
+  long leaves = 0, tests = 0, holds = 0, fails = 0;
+  for (const Edge& edge : edges) {
+    verify::EdgeCollision result;
+    certified.push_back(
+        TimeOf(3, [&] { result = DecideEdgeCollision(world, edge, {}, &workspace); }));
+    sampled.push_back(TimeOf(1, [&] {
+      TestSampledEdge(world, edge, {.step = 0.001, .space = numeric::Space::kFree}, &sampling);
+    }));
+    leaves += result.leaves;
+    tests += result.tests;
+    holds += result.verdict == Verdict::kHolds;
+    fails += result.verdict == Verdict::kFails;
+  }
+  const double n = static_cast<double>(edges.size());
+  std::printf(
+      "collisions of %zu guide edges, self-collision on: %ld hold, %ld fail, %ld undecided\n",
+      edges.size(), holds, fails, static_cast<long>(edges.size()) - holds - fails);
+  std::printf(
+      "  whole edge: mean %.0f us, 95th percentile %.0f us; %.1f leaves, %.0f plane tests\n",
+      Mean(certified), Quantile(certified, 0.95), static_cast<double>(leaves) / n,
+      static_cast<double>(tests) / n);
+  std::printf("  sampled at 0.001 by our fastest test: mean %.0f us (%.1fx)\n", Mean(sampled),
+              Mean(sampled) / Mean(certified));
+}
+
+void ReportStability(const numeric::World& world, const std::vector<Edge>& edges) {
+  verify::StabilityEdgeWorkspace workspace(world);
+  std::vector<double> certified;
+  long leaves = 0, holds = 0, fails = 0;
+  for (const Edge& edge : edges) {
+    verify::EdgeStability result;
+    certified.push_back(
+        TimeOf(1, [&] { result = DecideEdgeStability(world, edge, {}, &workspace); }));
+    leaves += result.leaves;
+    holds += result.verdict == Verdict::kHolds;
+    fails += result.verdict == Verdict::kFails;
+    if (result.verdict == Verdict::kUndecided) {
+      std::printf("  undecided at s = %.9f: %s (%ld leaves)\n", result.s, result.reason.c_str(),
+                  result.leaves);
+    }
+  }
+  const double n = static_cast<double>(edges.size());
+  std::printf("contact and balance of the same edges: %ld hold, %ld fail, %ld undecided\n", holds,
+              fails, static_cast<long>(edges.size()) - holds - fails);
+  std::printf("  whole edge: mean %.0f us, median %.0f us, 95th percentile %.0f us; %.1f leaves\n",
+              Mean(certified), Quantile(certified, 0.5), Quantile(certified, 0.95),
+              static_cast<double>(leaves) / n);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const numeric::Problem problem = numeric::io::ReadProblem(
+      argc > 1 ? argv[1] : CGUIDE_FIXTURES "/problems/chair_and_table.yaml");
+  const numeric::World world(problem.model);
+  const std::vector<Edge> edges = GuideEdges(problem, world, argc > 2 ? std::atoi(argv[2]) : 10);
+  if (edges.empty()) {
+    std::puts("no guide was found");
+    return 1;
+  }
+  numeric::KinematicState placed;
+  const double plain =
+      TimeOf(2000, [&] { numeric::ForwardKinematics(world.tree(), edges[0].from, &placed); });
+  std::printf("kinematics over 1/32 of an edge, %zu bodies; one plain evaluation: %.2f us\n",
+              world.tree().bodies.size(), plain);
+  ReportKinematics<0>(world, edges[0], plain);
+  ReportKinematics<1>(world, edges[0], plain);
+  ReportKinematics<2>(world, edges[0], plain);
+  ReportKinematics<3>(world, edges[0], plain);
+  ReportCollisions(world, edges);
+  ReportStability(world, edges);
+}

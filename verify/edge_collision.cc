@@ -1,0 +1,347 @@
+#include "cguide/verify/edge_collision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "cguide/exact/core/error.h"
+#include "cguide/numeric/collision_internal.h"
+#include "cguide/numeric/gjk_internal.h"
+#include "cguide/verify/moving_shape_internal.h"
+
+namespace cguide::verify {
+
+using Eigen::Vector3d;
+using numeric::Convex;
+using numeric::Geometry;
+using numeric::ObstaclePiece;
+using numeric::Pair;
+using numeric::PieceKind;
+using numeric::World;
+
+namespace {
+
+/** Two things to keep apart: a shape and a piece, or (self) two shapes. */
+struct Item {
+  int shape = -1;
+  int other = -1;
+  bool self = false;
+  Vector3d n_W = Vector3d::Zero();  ///< the direction that came nearest to a proof; zero: none
+};
+
+struct Task {
+  Leaf leaf;
+  std::vector<Item> items;
+};
+
+}  // namespace
+
+struct EdgeWorkspace::Scratch {
+  explicit Scratch(const World& world) : point(world) {}
+  numeric::Workspace point;
+  TaylorState<kDegree> state;
+  std::vector<MovingShape> shapes;
+  std::vector<long> stamp;  ///< leaf for which a shape was moved last
+  std::deque<Task> tasks;
+  numeric::StageCounts counts;
+};
+
+EdgeWorkspace::EdgeWorkspace(const World& world) : scratch(std::make_unique<Scratch>(world)) {}
+EdgeWorkspace::~EdgeWorkspace() = default;
+EdgeWorkspace::EdgeWorkspace(EdgeWorkspace&&) noexcept = default;
+EdgeWorkspace& EdgeWorkspace::operator=(EdgeWorkspace&&) noexcept = default;
+
+namespace {
+
+/** n.x over a placed convex set, at most; |n| <= 1 + 8 u. The rounding of this line is within
+ s.error (item 4 at PlacementError). */
+double HighestStatic(const Convex& s, const Vector3d& n) {
+  return n.dot(s.c) + numeric::CoreExtent(s, n) + s.radius * (1 + 16 * kUnit) +
+         s.error * (1 + 16 * kUnit);
+}
+
+bool BoxesApart(const Vector3d& lower, const Vector3d& upper, const Vector3d& other_lower,
+                const Vector3d& other_upper) {
+  return (lower.array() > other_upper.array()).any() || (other_lower.array() > upper.array()).any();
+}
+
+/** Box around a placed convex set, rounded outwards. */
+void StaticBox(const Convex& s, Vector3d* lower, Vector3d* upper) {
+  for (int i = 0; i < 3; ++i) {
+    (*upper)[i] = HighestStatic(s, Vector3d::Unit(i));
+    (*lower)[i] = -HighestStatic(s, -Vector3d::Unit(i));
+  }
+}
+
+class Decider {
+ public:
+  Decider(const World& world, const Edge& edge, const EdgeCollisionOptions& options,
+          EdgeWorkspace::Scratch* scratch)
+      : world_(world), g_(world.geometry()), edge_(edge), options_(options), x_(*scratch) {}
+
+  EdgeCollision Run();
+
+ private:
+  std::vector<Item> AllItems() const;
+  Pair PairOf(const Item& item) const;
+  double Skin(const Item& item) const;
+  const MovingShape& Shape(int index);
+
+  bool Holds(Item* item);
+  bool HoldsStatic(const MovingShape& a, const Convex& b, double skin, Item* item);
+  bool HoldsMoving(const MovingShape& a, const MovingShape& b, Item* item);
+  bool HoldsMesh(const MovingShape& a, const numeric::Mesh& mesh, double skin);
+  bool HoldsHalfspace(const MovingShape& a, const ObstaclePiece& piece, double skin);
+  bool Above(const MovingShape& a, double offset, double skin, const Vector3d& n);
+  bool Between(const MovingShape& a, const MovingShape& b, const Vector3d& n);
+
+  const Item* FindMeeting(const std::vector<Item>& items, double s);
+  bool Meets(const Item& item);
+  void Split(const Leaf& leaf, std::vector<Item> items);
+
+  const World& world_;
+  const Geometry& g_;
+  const Edge& edge_;
+  const EdgeCollisionOptions& options_;
+  EdgeWorkspace::Scratch& x_;
+  EdgeCollision result_;
+};
+
+std::vector<Item> Decider::AllItems() const {
+  std::vector<Item> items;
+  for (int s = 0; s < static_cast<int>(g_.shapes.size()); ++s) {
+    for (int p = 0; p < static_cast<int>(g_.pieces.size()); ++p) items.push_back({s, p, false});
+  }
+  for (const auto& [i, j] : g_.self_pairs) {
+    for (int s = g_.body_begin[i]; s < g_.body_begin[i + 1]; ++s) {
+      for (int t = g_.body_begin[j]; t < g_.body_begin[j + 1]; ++t) items.push_back({s, t, true});
+    }
+  }
+  return items;
+}
+
+Pair Decider::PairOf(const Item& item) const {
+  const int other = item.self ? g_.shapes[item.other].body : g_.pieces[item.other].object;
+  return {g_.shapes[item.shape].body, other, item.self};
+}
+
+double Decider::Skin(const Item& item) const {
+  return item.self ? 0 : g_.PairSkin(g_.shapes[item.shape].body, g_.pieces[item.other].object);
+}
+
+const MovingShape& Decider::Shape(int index) {
+  if (x_.stamp[index] != result_.leaves) {
+    const numeric::BodyShape& shape = g_.shapes[index];
+    x_.shapes[index] = Move(shape, x_.state.X_WB[shape.body]);
+    x_.stamp[index] = result_.leaves;
+  }
+  return x_.shapes[index];
+}
+
+// Every point of the shape is strictly above the plane n.x = offset - skin for every t, or above it
+// after a translation of skin along n, |n| >= 1 - 8 u.
+bool Decider::Above(const MovingShape& a, double offset, double skin, const Vector3d& n) {
+  ++result_.tests;
+  const double lowest = LowestOver(a, {n, offset, 0});
+  if (!(lowest > -skin * (1 - 16 * kUnit))) return false;
+  ++result_.planes;
+  return true;
+}
+
+// The reference moves with the mean of the two supporting vertices.
+bool Decider::Between(const MovingShape& a, const MovingShape& b, const Vector3d& n) {
+  ++result_.tests;
+  const Model2 low = LowestVertex(a, n), high = LowestVertex(b, -n);
+  const double radii = 0.5 * (b.radius - a.radius);
+  const MovingPlane plane{n, 0.5 * (low.c[0] - high.c[0]) + radii, 0.5 * (low.c[1] - high.c[1])};
+  if (!(LowestOver(a, plane) > 0 && HighestOver(b, plane) < 0)) return false;
+  ++result_.planes;
+  return true;
+}
+
+/** Directions from b towards a worth trying, from the middle of the leaf: the separating axes of
+ the boxes, then the closest points. Calls test(n) until it says yes. */
+template <typename Test>
+bool AnyDirection(const Convex& a, const Convex& b, Item* item, const Test& test) {
+  const auto good = [&](const Vector3d& n) {
+    item->n_W = n;
+    return test(n);
+  };
+  if (!item->n_W.isZero(0) && test(item->n_W)) return true;
+  const numeric::BoxAxis axis = numeric::BestBoxAxis(a, b);
+  if (axis.gap > 0) {
+    numeric::SeparationHint hint;
+    hint.code = static_cast<signed char>(axis.code);
+    if (good(numeric::HintDirection(a, b, hint))) return true;
+  }
+  const bool boxes = a.kind == numeric::CoreKind::kBox && b.kind == numeric::CoreKind::kBox;
+  if (boxes && a.half.minCoeff() > 0 && b.half.minCoeff() > 0 && axis.gap <= 0) return false;
+  numeric::GjkResult gjk;
+  numeric::Gjk(a, b, a.c - b.c, INFINITY, &gjk);
+  const double length = gjk.v.norm();
+  return !gjk.overlap && length > 0 && good(gjk.v / length);
+}
+
+bool Decider::HoldsStatic(const MovingShape& a, const Convex& b, double skin, Item* item) {
+  return AnyDirection(AtMiddle(a), b, item,
+                      [&](const Vector3d& n) { return Above(a, HighestStatic(b, n), skin, n); });
+}
+
+bool Decider::HoldsMoving(const MovingShape& a, const MovingShape& b, Item* item) {
+  return AnyDirection(AtMiddle(a), AtMiddle(b), item,
+                      [&](const Vector3d& n) { return Between(a, b, n); });
+}
+
+bool Decider::HoldsHalfspace(const MovingShape& a, const ObstaclePiece& piece, double skin) {
+  const double reach = a.lower.cwiseAbs().cwiseMax(a.upper.cwiseAbs()).sum();
+  return Above(a, piece.offset + numeric::HalfspaceError(piece, reach), skin, piece.normal);
+}
+
+// Triangles whose box the shape's box does not meet cannot touch it.
+bool Decider::HoldsMesh(const MovingShape& a, const numeric::Mesh& mesh, double skin) {
+  if (mesh.nodes.empty()) return true;
+  const Vector3d margin = Vector3d::Constant(mesh.error);
+  std::vector<int> open{0};
+  while (!open.empty()) {
+    const numeric::MeshNode& node = mesh.nodes[open.back()];
+    open.pop_back();
+    if (BoxesApart(a.lower, a.upper, node.lower - margin, node.upper + margin)) continue;
+    if (node.count == 0) {
+      open.push_back(node.first);
+      open.push_back(node.first + 1);
+      continue;
+    }
+    for (int i = 0; i < node.count; ++i) {
+      std::array<Vector3d, 3> corners;
+      const Convex triangle = numeric::TriangleConvex(mesh, mesh.order[node.first + i], &corners);
+      Item none;
+      const Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+      if (normal.norm() > 0) {
+        none.n_W = normal.normalized();
+        if (none.n_W.dot(a.c.c[0].head<3>().matrix() - triangle.c) < 0) none.n_W = -none.n_W;
+      }
+      if (!HoldsStatic(a, triangle, skin, &none)) return false;
+    }
+  }
+  return true;
+}
+
+bool Decider::Holds(Item* item) {
+  const MovingShape& a = Shape(item->shape);
+  if (item->self) {
+    const MovingShape& b = Shape(item->other);
+    return BoxesApart(a.lower, a.upper, b.lower, b.upper) || HoldsMoving(a, b, item);
+  }
+  const ObstaclePiece& piece = g_.pieces[item->other];
+  const double skin = Skin(*item);
+  switch (piece.kind) {
+    case PieceKind::kHalfspace:
+      return HoldsHalfspace(a, piece, skin);
+    case PieceKind::kMesh:
+      return HoldsMesh(a, *piece.mesh, skin);
+    case PieceKind::kConvex:
+      break;
+  }
+  Vector3d lower, upper;
+  StaticBox(piece.convex, &lower, &upper);
+  return BoxesApart(a.lower, a.upper, lower, upper) || HoldsStatic(a, piece.convex, skin, item);
+}
+
+/** A moving shape at one s as a placed set: its remainders, which then hold rounding alone, become
+ the error of its points, |p| <= L about the body's frame. */
+Convex Placed(const MovingShape& shape) {
+  Convex placed = AtMiddle(shape);
+  double error = shape.c.r.sum();
+  const Vector3d half = shape.local->half;
+  for (int j = 0; j < 3; ++j) error += half[j] * shape.A[j].r.sum();
+  placed.error = (error + numeric::PlacementError(0, 0, placed.reach, placed.c.norm())) * kUp;
+  return placed;
+}
+
+// Kinematics at the point s alone; whatever is proved to meet there refutes.
+const Item* Decider::FindMeeting(const std::vector<Item>& items, double s) {
+  ++result_.leaves;
+  EvaluateEdge<kDegree>(world_.tree(), edge_, {s, 0}, &x_.state);
+  for (const Item& item : items) {
+    if (Meets(item)) return &item;
+  }
+  return nullptr;
+}
+
+bool Decider::Meets(const Item& item) {
+  const Convex a = Placed(Shape(item.shape));
+  if (item.self) {
+    numeric::SeparationHint hint;
+    return DecideConvex(a, Placed(Shape(item.other)), 0, &hint, &x_.counts) == Verdict::kFails;
+  }
+  const ObstaclePiece& piece = g_.pieces[item.other];
+  const double skin = Skin(item);
+  numeric::SeparationHint hint;
+  switch (piece.kind) {
+    case PieceKind::kHalfspace:
+      return DecideHalfspace(a, piece, skin, &x_.counts) == Verdict::kFails;
+    case PieceKind::kMesh:
+      return DecideMesh(a, *piece.mesh, skin, &x_.counts) == Verdict::kFails;
+    case PieceKind::kConvex:
+      break;
+  }
+  return DecideConvex(a, piece.convex, skin, &hint, &x_.counts) == Verdict::kFails;
+}
+
+void Decider::Split(const Leaf& leaf, std::vector<Item> items) {
+  const double half = 0.5 * leaf.half;
+  x_.tasks.push_back({{leaf.middle - half, half}, items});
+  x_.tasks.push_back({{leaf.middle + half, half}, std::move(items)});
+}
+
+EdgeCollision Decider::Run() {
+  // The first waypoint settles on which side of solids the robot starts.
+  numeric::Place(world_, edge_.from, &x_.point);
+  const numeric::FreeAnswer start = numeric::TestFree(world_, &x_.point);
+  if (start.verdict != Verdict::kHolds) {
+    result_.verdict = start.verdict;
+    result_.pair = start.first;
+    return result_;
+  }
+  x_.shapes.resize(g_.shapes.size());
+  x_.stamp.assign(g_.shapes.size(), -1);
+  // Wide leaves first: their middles find a deep meeting before narrow ones close in on the instant
+  // at which it begins, where nothing is certain.
+  x_.tasks.clear();
+  x_.tasks.push_back({{0.5, 0.5}, AllItems()});
+  while (!x_.tasks.empty()) {
+    Task task = std::move(x_.tasks.front());
+    x_.tasks.pop_front();
+    ++result_.leaves;
+    EvaluateEdge<kDegree>(world_.tree(), edge_, task.leaf, &x_.state);
+    std::vector<Item> open;
+    for (Item& item : task.items) {
+      if (!Holds(&item)) open.push_back(item);
+    }
+    if (open.empty()) continue;
+    if (const Item* meeting = FindMeeting(open, task.leaf.middle)) {
+      result_.verdict = Verdict::kFails;
+      result_.pair = PairOf(*meeting);
+      result_.s = task.leaf.middle;
+      return result_;
+    }
+    if (task.leaf.half <= options_.shortest || result_.leaves >= options_.max_leaves) {
+      result_.verdict = Verdict::kUndecided;
+      result_.pair = PairOf(open.front());
+      result_.s = task.leaf.middle;
+      return result_;
+    }
+    Split(task.leaf, std::move(open));
+  }
+  return result_;
+}
+
+}  // namespace
+
+EdgeCollision DecideEdgeCollision(const World& world, const Edge& edge,
+                                  const EdgeCollisionOptions& options, EdgeWorkspace* workspace) {
+  Require(options.shortest >= 0x1p-40, "leaves must not be shorter than 2^-40");
+  return Decider(world, edge, options, workspace->scratch.get()).Run();
+}
+
+}  // namespace cguide::verify

@@ -1,0 +1,281 @@
+#include "cguide/verify/edge_stability.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+#include <deque>
+#include <vector>
+
+#include "cguide/exact/core/error.h"
+#include "cguide/numeric/membership.h"
+#include "cguide/verify/kept_contact_internal.h"
+
+namespace cguide::verify {
+
+using Eigen::Vector3d;
+using numeric::World;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+struct StabilityEdgeWorkspace::Scratch {
+  explicit Scratch(const World& world) : guide(world), keeper(world) {}
+  numeric::GuideWorkspace guide;
+  ContactKeeper keeper;
+  TaylorState<kDegree> state;
+  std::vector<KeptContact> kept;
+  std::vector<numeric::Contact> usable;  ///< those of the middle that are kept, same order
+  std::deque<Leaf> leaves;
+};
+
+StabilityEdgeWorkspace::StabilityEdgeWorkspace(const World& world)
+    : scratch(std::make_unique<Scratch>(world)) {}
+StabilityEdgeWorkspace::~StabilityEdgeWorkspace() = default;
+StabilityEdgeWorkspace::StabilityEdgeWorkspace(StabilityEdgeWorkspace&&) noexcept = default;
+StabilityEdgeWorkspace& StabilityEdgeWorkspace::operator=(StabilityEdgeWorkspace&&) noexcept =
+    default;
+
+namespace {
+
+/** (u, r(t) x u) of a constant force direction at a moving arm. */
+struct MovingWrench {
+  Model2 row[6];
+};
+
+MovingWrench WrenchOf(const Vector2& arm, const Vector3d& u) {
+  MovingWrench wrench;
+  for (int i = 0; i < 3; ++i) {
+    wrench.row[i] = Constant<kDegree>(u[i]);
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    wrench.row[3 + i] = u[k] * Coordinate<kDegree>(arm, j) - u[j] * Coordinate<kDegree>(arm, k);
+  }
+  return wrench;
+}
+
+double Size(const Model2& a) { return std::max(-LowerBound(a), UpperBound(a)); }
+
+/** u.n* >= |u| C for every real normal n* within `error` of n, C = 1/sqrt(1 + mu^2): rounding as
+ derived at BoundError of numeric/stability_certificates.cc. */
+bool IsAdmissible(const KeptContact& contact, const Vector3d& u) {
+  const double cosine = 1 / std::sqrt(1 + contact.friction * contact.friction);
+  return u.dot(contact.n_W) >= u.norm() * (cosine + contact.normal_error + 16 * kUnit);
+}
+
+/** A balance over a leaf: directions, weights and arms; the first six are the basis. */
+struct LeafBalance {
+  int size = 0;
+  MovingWrench wrench[numeric::ForceWitness::kCapacity];
+  Model2 weight[numeric::ForceWitness::kCapacity];
+};
+
+/** v - A(t) lambda(t). */
+void Residual(const LeafBalance& balance, const Vector3d& v_f, Model2 (&residual)[6]) {
+  for (int i = 0; i < 6; ++i) {
+    residual[i] = Constant<kDegree>(i < 3 ? v_f[i] : 0.0);
+    for (int j = 0; j < balance.size; ++j) {
+      residual[i] = residual[i] - balance.weight[j] * balance.wrench[j].row[i];
+    }
+  }
+}
+
+/** R(a, .) times a moving vector. */
+Model2 RowTimes(const Matrix6d& R, int a, const Model2 (&x)[6]) {
+  Model2 sum = R(a, 0) * x[0];
+  for (int i = 1; i < 6; ++i) sum = sum + R(a, i) * x[i];
+  return sum;
+}
+
+/** Puts the constant and the linear part of the residual on the basis; a proposal like all weights.
+ */
+void CorrectWeights(const Matrix6d& R, const Vector3d& v_f, LeafBalance* balance) {
+  Model2 residual[6];
+  Residual(*balance, v_f, residual);
+  for (int part = 0; part <= 1; ++part) {
+    Vector6d c;
+    for (int i = 0; i < 6; ++i) c[i] = residual[i].c[part];
+    const Vector6d step = R * c;
+    for (int j = 0; j < 6; ++j) balance->weight[j].c[part] += step[j];
+  }
+}
+
+/** The two inequalities of DecideEdgeStability. NaN fails every comparison. */
+bool ProveBalance(const Matrix6d& R, const Vector3d& v_f, const LeafBalance& balance) {
+  double least = INFINITY;
+  for (int j = 0; j < balance.size; ++j) {
+    const double lowest = LowerBound(balance.weight[j]);
+    if (!(lowest >= 0)) return false;
+    if (j < 6 && !(lowest >= least)) least = lowest;
+  }
+  Model2 residual[6];
+  Residual(balance, v_f, residual);
+  double kappa = 0, moved = 0;
+  for (int a = 0; a < 6; ++a) {
+    double row = 0;
+    for (int j = 0; j < 6; ++j) {
+      Model2 entry = -RowTimes(R, a, balance.wrench[j].row);
+      if (j == a) entry = Constant<kDegree>(1.0) + entry;
+      row += Size(entry);
+    }
+    if (!(row <= kappa)) kappa = row;
+    const double size = Size(RowTimes(R, a, residual));
+    if (!(size <= moved)) moved = size;
+  }
+  kappa *= kUp;
+  return kappa < 1 && moved * kUp < (1 - kappa) * least * (1 - 0x1p-45);
+}
+
+class Decider {
+ public:
+  Decider(const World& world, const Edge& edge, const EdgeStabilityOptions& options,
+          StabilityEdgeWorkspace::Scratch* scratch)
+      : world_(world), edge_(edge), options_(options), x_(*scratch) {}
+
+  EdgeStability Run();
+
+ private:
+  void PlaceAt(double s);
+  Verdict TestMiddle(const Leaf& leaf);
+  void KeepContacts(const Leaf& leaf);
+  bool HoldsOver(const Leaf& leaf);
+  bool Balances(const numeric::ForceWitness& forces);
+
+  const World& world_;
+  const Edge& edge_;
+  const EdgeStabilityOptions& options_;
+  StabilityEdgeWorkspace::Scratch& x_;
+  EdgeStability result_;
+};
+
+// The real placement at s, which in general is that of no double configuration: the middle of
+// Taylor models of a single point, whose remainders hold rounding alone and become error bounds. A
+// point at |p_B| <= L is within sum_ij r(R_ij) L + sum_i r(p_i) of R p_B + p.
+void Decider::PlaceAt(double s) {
+  EvaluateEdge<kDegree>(world_.tree(), edge_, {s, 0}, &x_.state);
+  numeric::KinematicState& state = x_.guide.geometry.state;
+  const std::size_t n = x_.state.X_WB.size();
+  state.X_WB.resize(n);
+  state.axis_W.resize(n);
+  state.error_R.resize(n);
+  state.error_p.resize(n);
+  for (std::size_t b = 0; b < n; ++b) {
+    const TaylorPose<kDegree>& X = x_.state.X_WB[b];
+    double error_R = X.error_R;
+    for (int j = 0; j < 3; ++j) {
+      state.X_WB[b].R.col(j) = X.R[j].c[0].head<3>();
+      error_R += X.R[j].r.sum();
+    }
+    state.X_WB[b].p = X.p.c[0].head<3>();
+    state.error_R[b] = error_R * kUp;
+    state.error_p[b] = (X.error_p + X.p.r.sum()) * kUp;
+  }
+  state.com_W = x_.state.com_W.c[0].head<3>();
+  state.com_error = x_.state.com_W.r.sum() * kUp;
+  PlaceFromState(world_, &x_.guide.geometry);
+}
+
+// Fills x_.guide.contacts.
+Verdict Decider::TestMiddle(const Leaf& leaf) {
+  PlaceAt(leaf.middle);
+  if (world_.model().require == GuideRequirement::kStability) {
+    return TestPlacedStability(world_, &x_.guide).verdict;
+  }
+  FindContacts(world_, &x_.guide.geometry, &x_.guide.contacts);
+  for (const numeric::Contact& contact : x_.guide.contacts) {
+    if (contact.certain) return Verdict::kHolds;
+  }
+  return x_.guide.contacts.empty() ? Verdict::kFails : Verdict::kUndecided;
+}
+
+void Decider::KeepContacts(const Leaf& leaf) {
+  EvaluateEdge<kDegree>(world_.tree(), edge_, leaf, &x_.state);
+  x_.kept.clear();
+  x_.usable.clear();
+  for (const numeric::Contact& contact : x_.guide.contacts) {
+    KeptContact kept;
+    if (!contact.certain || !x_.keeper.Keep(x_.state, contact, &kept)) continue;
+    x_.kept.push_back(kept);
+    x_.usable.push_back(contact);
+    x_.usable.back().friction = kept.friction;
+    x_.usable.back().n_W = kept.n_W;
+    x_.usable.back().normal_error = kept.normal_error;
+  }
+}
+
+bool Decider::Balances(const numeric::ForceWitness& forces) {
+  if (forces.size < 6) return false;
+  const Vector3d v_f = -world_.tree().mass * world_.model().gravity;
+  LeafBalance balance;
+  balance.size = forces.size;
+  Matrix6d B;
+  for (int j = 0; j < forces.size; ++j) {
+    const numeric::WitnessForce& force = forces.force[j];
+    const KeptContact& contact = x_.kept[force.contact];
+    if (!IsAdmissible(contact, force.u_W)) return false;
+    const Vector2 arm = contact.force_point - x_.state.com_W;
+    balance.wrench[j] = WrenchOf(arm, force.u_W);
+    balance.weight[j] = Constant<kDegree>(force.weight);
+    if (j >= 6) continue;
+    for (int i = 0; i < 6; ++i) B(i, j) = balance.wrench[j].row[i].c[0];
+  }
+  const Matrix6d R = B.partialPivLu().inverse();
+  if (!R.allFinite()) return false;
+  // The real mass is that of the model; its rounding in `tree` scales all weights alike, and being
+  // interior does not depend on the scale of v.
+  CorrectWeights(R, v_f, &balance);
+  return ProveBalance(R, v_f, balance);
+}
+
+bool Decider::HoldsOver(const Leaf& leaf) {
+  KeepContacts(leaf);
+  if (x_.kept.empty()) return false;
+  if (world_.model().require == GuideRequirement::kContact) return true;
+  numeric::StabilityQuery query = PlacedQuery(world_, x_.guide);
+  query.contacts = x_.usable;
+  const numeric::StabilityAnswer answer = TryStability(query, &x_.guide.stability);
+  return answer.verdict == Verdict::kHolds && Balances(answer.forces);
+}
+
+EdgeStability Decider::Run() {
+  if (world_.model().contact.model == ContactModel::kNearest) {
+    result_.verdict = Verdict::kUndecided;
+    result_.reason = "contact model \"nearest\": its contacts are not continuous";
+    return result_;
+  }
+  x_.leaves.assign(1, Leaf{0.5, 0.5});
+  while (!x_.leaves.empty()) {
+    const Leaf leaf = x_.leaves.front();
+    x_.leaves.pop_front();
+    ++result_.leaves;
+    const Verdict middle = TestMiddle(leaf);
+    if (middle == Verdict::kFails) {
+      result_.verdict = middle;
+      result_.s = leaf.middle;
+      return result_;
+    }
+    if (middle == Verdict::kHolds && HoldsOver(leaf)) {
+      ++result_.proved;
+      continue;
+    }
+    if (leaf.half <= options_.shortest || result_.leaves >= options_.max_leaves) {
+      result_.verdict = Verdict::kUndecided;
+      result_.s = leaf.middle;
+      result_.reason = middle == Verdict::kHolds ? "no set of contacts is known to stay"
+                                                 : "the middle of the leaf is not decided";
+      return result_;
+    }
+    const double half = 0.5 * leaf.half;
+    x_.leaves.push_back({leaf.middle - half, half});
+    x_.leaves.push_back({leaf.middle + half, half});
+  }
+  return result_;
+}
+
+}  // namespace
+
+EdgeStability DecideEdgeStability(const World& world, const Edge& edge,
+                                  const EdgeStabilityOptions& options,
+                                  StabilityEdgeWorkspace* workspace) {
+  Require(options.shortest >= 0x1p-40, "leaves must not be shorter than 2^-40");
+  return Decider(world, edge, options, workspace->scratch.get()).Run();
+}
+
+}  // namespace cguide::verify

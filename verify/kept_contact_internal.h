@@ -1,0 +1,77 @@
+#pragma once
+
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "cguide/exact/body_distance.h"
+#include "cguide/numeric/contact.h"
+#include "cguide/numeric/world.h"
+#include "cguide/verify/moving_shape_internal.h"
+
+namespace cguide::verify {
+
+/** A flat side of an obstacle: the surface of a halfspace, or a face of a box. */
+struct Flat {
+  int piece = -1;
+  int face = -1;  ///< of a box: axis, plus 3 for its negative side; -1 for a halfspace
+  bool operator<(const Flat& other) const {
+    return std::tie(piece, face) < std::tie(other.piece, other.face);
+  }
+};
+
+/** A contact that stays active over a leaf (DESIGN part 6, cases F and L). */
+struct KeptContact {
+  Eigen::Vector3d n_W = Eigen::Vector3d::UnitZ();
+  double normal_error = 0;  ///< bound on |n_W - the real normal| for every t
+  double friction = 0;
+  Vector2 force_point;  ///< x - r n, in W
+};
+
+/** Finds which contacts of one instant stay over a leaf. One per thread; it remembers which pieces
+ lie behind which flats, a question over Q. */
+class ContactKeeper {
+ public:
+  explicit ContactKeeper(const numeric::World& world);
+
+  /** Whether the contact, found at the middle of the leaf, provably stays for every t. x(t) is the
+   site's centre. */
+  bool Keep(const TaylorState<kDegree>& state, const numeric::Contact& contact, KeptContact* kept);
+
+ private:
+  /** The site over the leaf. */
+  struct MovingSite {
+    Vector2 x;
+    Eigen::Vector3d lower, upper;  ///< box of x(t)
+    double radius = 0;
+    double skin = 0;
+    double step = 0;  ///< bound on |x(t) - x|, x the stored centre at the middle
+  };
+
+  /** F: n.z = h is a flat's plane with unit outward n, d = n.x - h. The flat's piece is convex, so
+   that its point nearest to x is the foot y = x - d n as soon as that lies in the flat. It is a
+   contact as long as r - skin < d < r + eps. It stays a local closest point because every other
+   piece keeps farther than the seam from y, or lies behind the plane: a point z with n.z <= h has
+   |z - x| >= d = |y - x|. Inside the obstacle by less than the skin, the flat is the nearest way
+   out where y is farther than that from its rim. */
+  bool KeepOnFlat(const MovingSite& site, const Flat& flat, KeptContact* kept);
+
+  /** L: y(t) is the point of a convex piece nearest to x(t), w = x - y. Both maps x -> y and x -> w
+   are 1-Lipschitz [Moreau 1965], so within |x(t) - x(0)| <= step the distance stays within `step`
+   of its middle value, y within `step` of y(0), and w/|w| within 2 step/|w(0)| of n(0). Other
+   pieces keep farther than the seam from all those y, or are never as near to x as the piece is. */
+  bool KeepOnConvex(const MovingSite& site, const numeric::Contact& contact, int piece,
+                    KeptContact* kept);
+
+  bool FindFlat(const numeric::Contact& contact, Flat* flat) const;
+  int FindConvex(const numeric::Contact& contact) const;
+  bool InFace(const numeric::ObstaclePiece& piece, int face, const Vector2& x, double margin) const;
+  bool LiesBehind(const Flat& flat, int piece);
+  void SetForcePoint(const MovingSite& site, KeptContact* kept) const;
+
+  const numeric::World& world_;
+  exact::PreparedModel exact_;
+  std::map<std::pair<Flat, int>, bool> behind_;
+};
+
+}  // namespace cguide::verify
