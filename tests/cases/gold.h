@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cguide/exact/cone_membership.h"
+#include "cguide/exact/core/path.h"
+#include "cguide/exact/core/rational.h"
+#include "cguide/exact/core/wrench.h"
+#include "cguide/exact/equilibrium.h"
+
+// Readers of fixtures/gold, whose README.md specifies the files. Numbers are read exactly.
+namespace cguide::testing {
+
+/** A cone of wrenches, a demand and where it lies. */
+struct GoldCone {
+  std::string name;
+  std::vector<VectorXq> generators;  ///< wrenches
+  VectorXq demand;
+  /** The same as forces at points, where the file gives them so and doubles hold every number. */
+  std::optional<std::vector<AppliedForce>> forces;
+  std::optional<AppliedForce> demand_force;
+  exact::Membership expect = exact::Membership::kOutside;
+  std::optional<int> rank;
+  std::optional<int> facets;
+};
+
+/** Two convex hulls and their squared distance. */
+struct GoldHulls {
+  std::string name;
+  std::vector<Vector3q> a, b;
+  Rational squared;
+};
+
+/** A stance against the round cones. */
+struct GoldStance {
+  std::string name;
+  exact::EquilibriumQuery query;
+  Verdict expect = Verdict::kUndecided;
+  std::optional<int> rank;
+  std::optional<exact::StabilityReason> reason;
+};
+
+/** @throws Error (kBadInput) with file:line where a line is not as specified. */
+std::vector<GoldCone> ReadGoldCones(const std::string& file);
+std::vector<GoldHulls> ReadGoldHulls(const std::string& file);
+std::vector<GoldStance> ReadGoldStances(const std::string& file);
+
+/** The doubles that equal the rationals; nothing where one is no double. */
+std::optional<Eigen::VectorXd> AsDoubles(const VectorXq& v);
+
+}  // namespace cguide::testing
