@@ -1,0 +1,72 @@
+// Random cases for the pairs of twins, in an ordinary build, as fast as they go:
+//   twin_fuzz [FAMILY ...] [--seed N] [--count M] [--length BYTES]
+// Case i of a family is made from the bytes of a generator seeded with (seed, i), so that one case
+// can be repeated alone. Exit 1 at the first wrong answer, with the command that repeats it.
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+
+#include "tests/fuzz/twins.h"
+
+namespace {
+
+using namespace cguide::fuzz;  // NOLINT: a program of one file
+
+struct Arguments {
+  std::vector<std::string> families;
+  std::uint64_t seed = 1, count = 100000;
+  std::size_t length = 160;
+  long independent = 10000;  ///< cases also given to the independent solver
+};
+
+bool Run(const Family& family, const Arguments& arguments) {
+  Tally tally;
+  std::vector<std::uint8_t> bytes(arguments.length);
+  const std::uint64_t every = std::max<std::uint64_t>(
+      1, arguments.count / static_cast<std::uint64_t>(arguments.independent));
+  for (std::uint64_t i = 0; i < arguments.count; ++i) {
+    std::mt19937_64 rng(arguments.seed + i);
+    for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(rng());
+    ByteStream in(bytes.data(), bytes.size());
+    const std::string wrong = family.check(in, i % every == 0, &tally);
+    if (wrong.empty()) continue;
+    std::printf("%s: wrong: %s\n  repeat with: twin_fuzz %s --seed %llu --count 1 --length %zu\n",
+                family.name, wrong.c_str(), family.name,
+                static_cast<unsigned long long>(arguments.seed + i), arguments.length);
+    return false;
+  }
+  std::printf(
+      "%s: %ld cases, 0 wrong; %ld fast, %ld exact, %ld open; %ld also by an independent solver\n",
+      family.name, tally.cases, tally.fast, tally.exact, tally.open, tally.checked);
+  std::fflush(stdout);
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments;
+  for (int i = 1; i < argc; ++i) {
+    const auto number = [&] { return i + 1 < argc ? std::strtoull(argv[++i], nullptr, 10) : 0; };
+    if (std::strcmp(argv[i], "--seed") == 0) {
+      arguments.seed = number();
+    } else if (std::strcmp(argv[i], "--count") == 0) {
+      arguments.count = number();
+    } else if (std::strcmp(argv[i], "--length") == 0) {
+      arguments.length = static_cast<std::size_t>(number());
+    } else {
+      arguments.families.emplace_back(argv[i]);
+    }
+  }
+  bool right = true, any = false;
+  for (const Family& family : kFamilies) {
+    bool asked = arguments.families.empty();
+    for (const std::string& name : arguments.families) asked |= name == family.name;
+    if (!asked) continue;
+    any = true;
+    right = Run(family, arguments) && right;
+  }
+  if (!any) std::fprintf(stderr, "twin_fuzz: no such family\n");
+  return !any ? 2 : right ? 0 : 1;
+}
