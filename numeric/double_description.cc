@@ -1,232 +1,165 @@
 #include "cguide/numeric/double_description.h"
 
+#include <Eigen/LU>
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <numeric>
 #include <random>
 
+#include "cguide/numeric/dual_kernels_internal.h"
+#include "cguide/numeric/fp_guard.h"
+#include "cguide/numeric/polar_graph_internal.h"
+
 namespace cguide::numeric {
+
+struct DualWorkspace::Impl {
+  PolarGraph graph;
+  RayTable rays;
+  std::vector<Vector6d> units;  // generators, normalised; then their coordinates in the span
+  std::vector<int> nonzero, order;
+};
+
+DualWorkspace::DualWorkspace() : impl_(std::make_unique<Impl>()) {}
+DualWorkspace::~DualWorkspace() = default;
+DualWorkspace::DualWorkspace(DualWorkspace&&) noexcept = default;
+DualWorkspace& DualWorkspace::operator=(DualWorkspace&&) noexcept = default;
+
 namespace {
 
-// The half-spaces whose plane holds a ray, as bits.
-class PlaneSet {
- public:
-  explicit PlaneSet(int words = 0) : words_(words, 0) {}
-  void Add(int i) { words_[i / 64] |= std::uint64_t{1} << (i % 64); }
-  static int CountCommon(const PlaneSet& a, const PlaneSet& b) {
-    int count = 0;
-    for (std::size_t w = 0; w < a.words_.size(); ++w) {
-      count += std::popcount(a.words_[w] & b.words_[w]);
-    }
-    return count;
-  }
-  void SetCommon(const PlaneSet& a, const PlaneSet& b) {
-    words_.resize(a.words_.size());
-    for (std::size_t w = 0; w < words_.size(); ++w) words_[w] = a.words_[w] & b.words_[w];
-  }
-  bool Contains(const PlaneSet& other) const {
-    std::uint64_t missing = 0;
-    for (std::size_t w = 0; w < words_.size(); ++w) missing |= other.words_[w] & ~words_[w];
-    return missing == 0;
-  }
+using Impl = DualWorkspace::Impl;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
- private:
-  std::vector<std::uint64_t> words_;
+void Normalise(std::span<const Vector6d> generators, Impl* w) {
+  w->units.resize(generators.size());
+  w->nonzero.clear();
+  for (std::size_t i = 0; i < generators.size(); ++i) {
+    const double largest = generators[i].cwiseAbs().maxCoeff();
+    Require(generators[i].allFinite(), "a generator of a cone must be finite");
+    if (largest == 0) continue;
+    // Twice, so that neither the square nor the quotient of an extreme length overflows.
+    w->units[i] = (generators[i] / largest).normalized();
+    w->nonzero.push_back(static_cast<int>(i));
+  }
+}
+
+struct Span {
+  int rank = 0;
+  int basis[6];
+  Matrix6d Q = Matrix6d::Identity();  // first `rank` columns span the generators, orthonormal
 };
 
-struct Ray {
-  Vector6d y;
-  PlaneSet planes;
-  std::vector<int> adjacent;  ///< indices of rays that span a 2-face with this one
-  double value = 0;           ///< y.a for the half-space being added
-};
-
-// The polar cone { y : y.a <= 0 for the generators added so far } = lines + cone(rays), rays
-// extreme modulo the lines.
-class PolarCone {
- public:
-  PolarCone(std::span<const Vector6d> generators, double tolerance)
-      : generators_(generators),
-        tolerance_(tolerance),
-        num_words_(1 + int(generators.size()) / 64) {
-    for (int i = 0; i < 6; ++i) lines_.push_back(Vector6d::Unit(i));
+// Takes out what lies along the first k columns of Q, twice [Giraud, Langou, Rozloznik 2005].
+Vector6d Residual(const Matrix6d& Q, int k, Vector6d a) {
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int j = 0; j < k; ++j) a -= Q.col(j).dot(a) * Q.col(j);
   }
-
-  void AddHalfspace(int i);
-  ConeFacets Result() const;
-
- private:
-  void CutLine(std::size_t line, int i, const Vector6d& a);
-  void CutRays(int i);
-  void Replace(int p, int q, int i);
-  void ConnectOnPlane(const std::vector<int>& on_plane);
-  void Compact();
-
-  const std::span<const Vector6d> generators_;
-  const double tolerance_;
-  const int num_words_;
-  std::vector<Vector6d> lines_;  // orthonormal
-  std::vector<int> added_;
-  std::vector<Ray> rays_;
-};
-
-void PolarCone::AddHalfspace(int i) {
-  const Vector6d a = generators_[i].normalized();
-  std::size_t line = lines_.size();
-  double largest = tolerance_;
-  for (std::size_t l = 0; l < lines_.size(); ++l) {
-    if (std::abs(lines_[l].dot(a)) > largest) {
-      largest = std::abs(lines_[l].dot(a));
-      line = l;
-    }
-  }
-  if (line < lines_.size()) {
-    CutLine(line, i, a);
-  } else {
-    for (Ray& ray : rays_) {
-      ray.value = ray.y.dot(a);
-      if (std::abs(ray.value) <= tolerance_) ray.value = 0;
-    }
-    CutRays(i);
-  }
-  added_.push_back(i);
+  return a;
 }
 
-// A line crosses the plane: one direction of the lineality space is lost and becomes a ray,
-// everything else slides along it into the plane. The new ray lies in all earlier planes, and the
-// cone is now a pyramid over what it was, so the ray is adjacent to all others.
-void PolarCone::CutLine(std::size_t line, int i, const Vector6d& a) {
-  // With orthonormal lines the projection of a onto their span is what crosses the plane; turning
-  // the basis so that one line is along it leaves the others in the plane.
-  Vector6d along = Vector6d::Zero();
-  for (const Vector6d& l : lines_) along += l.dot(a) * l;
-  along.normalize();
-  lines_.erase(lines_.begin() + line);
-  std::vector<Vector6d> rest;
-  for (Vector6d l : lines_) {
-    for (int pass = 0; pass < 2; ++pass) {
-      l -= l.dot(along) * along;
-      for (const Vector6d& r : rest) l -= l.dot(r) * r;
-      l.normalize();
+// Gram-Schmidt, the generator farthest from the span so far next.
+Span FindSpan(const Impl& w, double tolerance) {
+  Span span;
+  std::vector<Vector6d> rest(w.units);
+  for (; span.rank < 6; ++span.rank) {
+    double largest = tolerance * tolerance;
+    int best = -1;
+    for (const int i : w.nonzero) {
+      const double size = rest[i].squaredNorm();
+      if (size > largest) {
+        largest = size;
+        best = i;
+      }
     }
-    rest.push_back(l);
+    if (best < 0) break;
+    const int k = span.rank;
+    span.basis[k] = best;
+    span.Q.col(k) = Residual(span.Q, k, w.units[best]).normalized();
+    for (const int i : w.nonzero) rest[i] -= span.Q.col(k).dot(rest[i]) * span.Q.col(k);
   }
-  lines_ = std::move(rest);
-  Ray ray{-along, PlaneSet(num_words_), {}, 0};
-  for (const int plane : added_) ray.planes.Add(plane);
-  const double slope = along.dot(a);
-  for (Ray& other : rays_) {
-    other.y -= (other.y.dot(a) / slope) * along;
-    other.y.normalize();
-    other.planes.Add(i);
-    other.adjacent.push_back(static_cast<int>(rays_.size()));
-    ray.adjacent.push_back(static_cast<int>(ray.adjacent.size()));
+  for (int k = span.rank, unit = 0; k < 6; ++unit) {
+    const Vector6d a = Residual(span.Q, k, Vector6d::Unit(unit));
+    if (a.norm() > 0.3) span.Q.col(k++) = a.normalized();
   }
-  rays_.push_back(std::move(ray));
+  return span;
 }
 
-// Puts a ray into the plane, on the 2-face of p (outside) and q (inside). The new ray is adjacent
-// to q; the others on the plane follow in ConnectOnPlane. Rays strictly inside keep their
-// adjacencies: the smallest face that holds two of them does not lie in the new plane, and cutting
-// it keeps its dimension.
-void PolarCone::Replace(int p, int q, int i) {
-  Ray ray{rays_[p].value * rays_[q].y - rays_[q].value * rays_[p].y, PlaneSet(), {q}, 0};
-  ray.y.normalize();
-  ray.planes.SetCommon(rays_[p].planes, rays_[q].planes);
-  ray.planes.Add(i);
-  *std::find(rays_[q].adjacent.begin(), rays_[q].adjacent.end(), p) =
-      static_cast<int>(rays_.size());
-  rays_.push_back(std::move(ray));
-}
-
-void PolarCone::CutRays(int i) {
-  std::vector<int> outside, on_plane;
-  for (int r = 0; r < static_cast<int>(rays_.size()); ++r) {
-    if (rays_[r].value > 0) outside.push_back(r);
-    if (rays_[r].value == 0) {
-      rays_[r].planes.Add(i);
-      on_plane.push_back(r);
+void Start(const Span& span, Impl* w) {
+  const int r = span.rank;
+  if (r < 6) {
+    for (const int i : w->nonzero) {
+      const Vector6d a = span.Q.transpose() * w->units[i];
+      w->units[i].setZero();
+      w->units[i].head(r) = a.head(r);
     }
   }
-  if (outside.empty()) return;
-  for (const int p : outside) {
-    // Replace appends to rays_, which may move rays_[p].
-    for (std::size_t k = 0; k < rays_[p].adjacent.size(); ++k) {
-      const int q = rays_[p].adjacent[k];
-      if (rays_[q].value >= 0) continue;
-      on_plane.push_back(static_cast<int>(rays_.size()));
-      Replace(p, q, i);
-    }
-  }
-  ConnectOnPlane(on_plane);
-  Compact();
-}
-
-// Two rays of the plane are adjacent iff no third ray lies in all planes they share; such a third
-// ray would lie in the new plane too, so only those are asked. Adjacent rays share at least d - 2
-// planes, d the dimension of the pointed part, unless planes repeat, which only adds to the count.
-void PolarCone::ConnectOnPlane(const std::vector<int>& on_plane) {
-  const int needed = 6 - static_cast<int>(lines_.size()) - 2;
-  PlaneSet common(num_words_);
-  for (std::size_t i = 0; i < on_plane.size(); ++i) {
-    for (std::size_t j = i + 1; j < on_plane.size(); ++j) {
-      Ray &a = rays_[on_plane[i]], &b = rays_[on_plane[j]];
-      if (PlaneSet::CountCommon(a.planes, b.planes) < needed) continue;
-      if (std::find(a.adjacent.begin(), a.adjacent.end(), on_plane[j]) != a.adjacent.end())
-        continue;
-      common.SetCommon(a.planes, b.planes);
-      const bool third = std::any_of(on_plane.begin(), on_plane.end(), [&](int r) {
-        return r != on_plane[i] && r != on_plane[j] && rays_[r].planes.Contains(common);
-      });
-      if (third) continue;
-      a.adjacent.push_back(on_plane[j]);
-      b.adjacent.push_back(on_plane[i]);
-    }
+  w->graph.StartSimplex({span.basis, static_cast<std::size_t>(r)});
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> A(r, r);
+  for (int k = 0; k < r; ++k) A.row(k) = w->units[span.basis[k]].head(r).transpose();
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> inverse = A.inverse();
+  w->rays.Grow(r);
+  for (int k = 0; k < r; ++k) {
+    Vector6d y = Vector6d::Zero();
+    y.head(r) = -inverse.col(k).normalized();
+    w->rays.Set(k, y);
   }
 }
 
-void PolarCone::Compact() {
-  std::vector<int> moved(rays_.size(), -1);
-  int kept = 0;
-  for (std::size_t r = 0; r < rays_.size(); ++r) {
-    if (rays_[r].value > 0) continue;
-    moved[r] = kept;
-    if (static_cast<int>(r) != kept) rays_[kept] = std::move(rays_[r]);
-    ++kept;
-  }
-  rays_.resize(kept);
-  for (Ray& ray : rays_) {
-    std::size_t size = 0;
-    for (const int r : ray.adjacent) {
-      if (moved[r] >= 0) ray.adjacent[size++] = moved[r];
+void AddHalfspace(int i, double tolerance, Impl* w) {
+  PolarGraph& graph = w->graph;
+  RayTable& rays = w->rays;
+  const int found = rays.Multiply(w->units[i], tolerance);
+  auto& [outside, on_plane] = *graph.sides();
+  outside.clear();
+  on_plane.clear();
+  for (int k = 0; k < found; ++k) {
+    const int s = rays.list()[k];
+    if (rays.value(s) > tolerance) {
+      outside.push_back(s);
+    } else if (graph.alive(s)) {
+      on_plane.push_back(s);
     }
-    ray.adjacent.resize(size);
   }
-}
-
-ConeFacets PolarCone::Result() const {
-  ConeFacets result;
-  result.equations = lines_;
-  result.facets.reserve(rays_.size());
-  for (const Ray& ray : rays_) result.facets.push_back(ray.y);
-  return result;
+  graph.Cut(i, [&](int slot, int p, int q) {
+    rays.Grow(graph.num_slots());
+    rays.Set(slot, (rays.value(p) * rays.Get(q) - rays.value(q) * rays.Get(p)).normalized());
+  });
+  for (const int s : outside) rays.Set(s, Vector6d::Zero());
 }
 
 }  // namespace
 
-ConeFacets DualDescription(std::span<const Vector6d> generators, const DualOptions& options) {
-  std::vector<int> order(generators.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::mt19937_64 rng(1953);
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng() % i]);
-  PolarCone cone(generators, options.tolerance);
-  for (const int i : order) {
-    if (generators[i].norm() > 0) cone.AddHalfspace(i);
+void DualDescription(std::span<const Vector6d> generators, const DualOptions& options,
+                     DualWorkspace* workspace, ConeFacets* result) {
+  Impl* const w = workspace->impl();
+  result->facets.clear();
+  result->equations.clear();
+  Normalise(generators, w);
+  const Span span = FindSpan(*w, options.tolerance);
+  for (int k = span.rank; k < 6; ++k) result->equations.push_back(span.Q.col(k));
+  if (span.rank == 0) return;
+  w->graph.Reset(static_cast<int>(generators.size()), span.rank);
+  w->rays.Reset();
+  Start(span, w);
+  w->order.clear();
+  const int* const end = span.basis + span.rank;
+  for (const int i : w->nonzero) {
+    if (std::find(span.basis, end, i) == end) w->order.push_back(i);
   }
-  return cone.Result();
+  std::mt19937_64 rng(1953);
+  for (std::size_t i = w->order.size(); i > 1; --i) std::swap(w->order[i - 1], w->order[rng() % i]);
+  for (const int i : w->order) AddHalfspace(i, options.tolerance, w);
+  for (int s = 0; s < w->graph.num_slots(); ++s) {
+    if (!w->graph.alive(s)) continue;
+    const Vector6d y = w->rays.Get(s);
+    result->facets.push_back(span.rank == 6 ? y : Vector6d(span.Q * y));
+  }
+}
+
+ConeFacets DualDescription(std::span<const Vector6d> generators, const DualOptions& options) {
+  DualWorkspace workspace;
+  ConeFacets result;
+  DualDescription(generators, options, &workspace, &result);
+  return result;
 }
 
 double FacetExcess(const ConeFacets& cone, const Vector6d& v) {

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cguide/numeric/certified_facets.h"
+#include "cguide/numeric/dual_kernels_internal.h"
+#include "cguide/numeric/generator_rows_internal.h"
+#include "cguide/numeric/polar_graph_internal.h"
+
+namespace cguide::numeric {
+
+/** What a run knows of its rays beside the graph. Five rows (generators, then unit vectors of
+ coordinates left out, rows n, n + 1, ...) are independent and their planes hold the ray. */
+struct CertifiedRays {
+  std::vector<std::array<std::int32_t, 5>> basis;
+  std::vector<std::int8_t> orientation;  ///< times the normal of the rows of the basis is the ray
+  std::vector<std::int8_t> has_exact;    ///< its integer normal is stored
+  std::vector<std::uint64_t> exact;      ///< 30 E words a slot
+};
+
+struct CertifiedDualWorkspace::Impl {
+  PolarGraph graph;
+  RayTable table;
+  CertifiedRays rays;
+  GeneratorRows rows;
+  std::vector<int> order, common;
+};
+
+}  // namespace cguide::numeric

@@ -1,0 +1,134 @@
+#include "cguide/numeric/certified_facets.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+#include "cguide/exact/core/error.h"
+#include "cguide/exact/linear_algebra.h"
+#include "cguide/numeric/sampling.h"
+#include "tests/cases/wrench_sets.h"
+
+namespace cguide::numeric {
+namespace {
+
+using cguide::testing::RandomStanceSet;
+using cguide::testing::Storage;
+using cguide::testing::TieCase;
+using cguide::testing::TieCases;
+
+VectorXq Exact(const Vector6d& a) {
+  VectorXq result(6);
+  for (int k = 0; k < 6; ++k) result[k] = Lift(a[k]);
+  return result;
+}
+
+VectorXq Exact(const AppliedForce& g) {
+  const Vector3q u = Lift(g.u), m = exact::Cross(Lift(g.p), u);
+  VectorXq result(6);
+  for (int k = 0; k < 3; ++k) {
+    result[k] = u[k];
+    result[3 + k] = m[k];
+  }
+  return result;
+}
+
+// The list, its incidences, bases and doubles are those of the exact cone.
+template <typename Generator>
+CertifiedDual CheckAgainstExact(const std::vector<Generator>& generators) {
+  exact::GeneratorCone cone{6, {}, {}};
+  for (const Generator& g : generators) cone.rays.push_back(Exact(g));
+  const exact::HalfspaceCone expected = exact::FacetsOf(cone);
+  const CertifiedDual dual = CertifiedFacets(std::span<const Generator>(generators));
+  CHECK(dual.rank == exact::Rank(cone.rays));
+  CHECK(dual.facets.size() == expected.facets.size());
+  const exact::HalfspaceCone got = ExactFacets(std::span<const Generator>(generators), dual);
+  REQUIRE(got == expected);
+  for (std::size_t f = 0; f < dual.facets.size(); ++f) {
+    std::vector<VectorXq> basis;
+    for (int k = 0; k < dual.rank - 1; ++k) {
+      const int i = dual.facets[f].basis[k];
+      REQUIRE(i >= 0);
+      REQUIRE(dual.Holds(f, i));
+      basis.push_back(cone.rays[i]);
+    }
+    if (generators.size() < 40) REQUIRE(exact::Rank(basis) == dual.rank - 1);
+    // Exactly one facet of the list has precisely these generators, and its normal is near.
+    int same = 0;
+    for (const VectorXq& h : expected.facets) {
+      bool equal = true;
+      for (std::size_t i = 0; equal && i < generators.size(); ++i) {
+        equal = (exact::Dot(h, cone.rays[i]) == 0) == dual.Holds(f, static_cast<int>(i));
+      }
+      if (!equal) continue;
+      ++same;
+      Vector6d normal;
+      Rational largest = 0;
+      for (const Rational& x : h) largest = std::max<Rational>(largest, abs(x));
+      for (int k = 0; k < 6; ++k) normal[k] = NearestDouble(h[k] / largest);
+      CHECK((normal.normalized() - dual.facets[f].normal).norm() < 1e-5);
+    }
+    REQUIRE(same == 1);
+  }
+  return dual;
+}
+
+std::vector<Vector6d> RandomSmallIntegers(Rng& rng) {
+  const int n = static_cast<int>(Uniform(rng) * 14);
+  const int size = 1 + static_cast<int>(Uniform(rng) * 3),
+            kind = static_cast<int>(Uniform(rng) * 4);
+  const int empty = Uniform(rng) < 0.2 ? static_cast<int>(Uniform(rng) * 6) : 6;
+  std::vector<Vector6d> generators(n);
+  for (Vector6d& a : generators) {
+    for (double& x : a) x = std::floor(Uniform(rng) * (2 * size + 1)) - size;
+    if (kind > 0) a[0] = std::abs(a[0]) + (kind > 1);  // not everything the whole space
+    if (empty < 6) a[empty] = 0;
+  }
+  return generators;
+}
+
+}  // namespace
+
+TEST_CASE("certified facets of small integer cones are the exact ones, bases and incidences too") {
+  Rng rng(1953);
+  int whole = 0, flat = 0, pointed = 0;
+  for (int round = 0; round < 1500; ++round) {
+    const std::vector<Vector6d> generators = RandomSmallIntegers(rng);
+    CAPTURE(round, generators.size());
+    const CertifiedDual dual = CheckAgainstExact(generators);
+    CHECK_FALSE(dual.counters.reference);
+    whole += dual.rank == 6 && dual.facets.empty();
+    flat += dual.rank < 6;
+    pointed += dual.rank == 6 && !dual.facets.empty();
+  }
+  CHECK(whole > 50);
+  CHECK(flat > 50);
+  CHECK(pointed > 50);
+}
+
+TEST_CASE("certified facets of the ties of stances are the exact ones") {
+  Rng rng(1954);
+  std::int64_t exact_sides = 0;
+  for (const TieCase& tie : TieCases(100, rng)) {
+    CAPTURE(tie.name);
+    exact_sides += CheckAgainstExact(tie.set.generators).counters.exact_sides;
+  }
+  CHECK(exact_sides > 1000);
+}
+
+TEST_CASE("certified facets of stances, snapped and rounded, are the exact ones") {
+  Rng rng(1955);
+  for (const Storage storage : {Storage::kSnapped, Storage::kRounded}) {
+    for (int round = 0; round < 6; ++round) {
+      const int patches = 1 + round % 3, sides = round < 3 ? 4 : 3;
+      CAPTURE(patches, sides, storage == Storage::kSnapped);
+      CheckAgainstExact(RandomStanceSet(patches, sides, storage, rng).generators);
+    }
+  }
+}
+
+}  // namespace cguide::numeric
