@@ -250,15 +250,21 @@ bool CheckInteriorForces(const EquilibriumQuery& query, const std::vector<Contac
 }
 
 bool CheckSeparatingWrench(const EquilibriumQuery& query, const Vector6q& y) {
-  const Vector3q y_f = y.head(3), y_m = y.tail(3);
+  return ArePolar(query, {y}) && Dot(y, DemandedWrench(query)) > 0;
+}
+
+bool ArePolar(const EquilibriumQuery& query, const std::vector<Vector6q>& wrenches) {
   for (std::size_t i = 0; i < query.contacts.size(); ++i) {
     const auto cone = Widened(query.contacts[i].cone, query.contacts[i].error_w);
-    if (!cone) return false;
+    if (!cone && !wrenches.empty()) return false;
     for (const Vector3q& arm : PossibleArms(query, static_cast<int>(i))) {
-      if (!IsNeverDrivenBy(*cone, y_f + Cross(y_m, arm))) return false;
+      for (const Vector6q& y : wrenches) {
+        const Vector3q y_f = y.head(3), y_m = y.tail(3);
+        if (!IsNeverDrivenBy(*cone, y_f + Cross(y_m, arm))) return false;
+      }
     }
   }
-  return Dot(y, DemandedWrench(query)) > 0;
+  return true;
 }
 
 int WrenchRank(const EquilibriumQuery& query) {
