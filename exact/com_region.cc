@@ -217,6 +217,10 @@ std::optional<ComRegion> CheckComRegion(const EquilibriumQuery& query, const Vec
   Require(query.mass > 0, "the mass must be positive");
   Require(!IsZero(query.gravity), "gravity must not vanish");
   Require(!IsZero(up), "a plane needs a normal");
+  for (const ExactContact& contact : query.contacts) {
+    Require(!IsZero(contact.cone.w), "a contact normal must not vanish");
+    Require(contact.error_p >= 0 && query.com_error >= 0, "an error bound must not be negative");
+  }
   const BalanceChecker checker(query, evidence.basis);
   const Vector3q w = Scaled(-query.mass, query.gravity);
   const auto demand = [&w](const Vector3q& displacement) {

@@ -92,10 +92,17 @@ BoundaryPoint RegionExplorer::Shoot(const Vector2d& d) {
   }
   point.offset = point.h.dot(point.p);
   if (keep_evidence_) {
+    shot.Polish();
     point.balance = static_cast<int>(balances_.size());
     balances_.push_back(BalanceAt(inside_ + shot.reached() * contacts.length * d, shot));
   }
   return point;
+}
+
+double RegionExplorer::LineLength(const BoundaryPoint& point) const {
+  const Eigen::Vector3d normal =
+      workspace_->scratch->contacts.v_f.cross(Eigen::Vector3d(point.y.tail<3>()));
+  return std::hypot(normal.dot(e1_), normal.dot(e2_));
 }
 
 void RegionExplorer::Refine(std::size_t i) {

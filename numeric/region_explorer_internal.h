@@ -58,8 +58,8 @@ class RegionExplorer {
   const std::vector<BoundaryPoint>& points() const { return points_; }  ///< counter-clockwise
   const Eigen::Vector2d& inside() const { return inside_; }
   Eigen::Vector3d InWorld(const Eigen::Vector2d& q) const { return q[0] * e1_ + q[1] * e2_; }
-  const Eigen::Vector3d& e1() const { return e1_; }
-  const Eigen::Vector3d& e2() const { return e2_; }
+  /** Length of the line's normal w x y_m that belongs to the point's y, up to the weight of w. */
+  double LineLength(const BoundaryPoint& point) const;
 
   /** Finds the boundary point on the ray from inside() through the corner of the lines beside edge
    i of the polygon, or through its middle. */

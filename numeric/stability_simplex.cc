@@ -299,11 +299,12 @@ double Simplex::Shoot(const Vector6d& rate, double limit) {
   Generator column;
   column.wrench = -rate;
   reached_ = limit;
+  rate_ = rate;
   if (!Enter(column, Kind::kShift)) {
     x_ -= limit * ray_;
     return limit;
   }
-  const int row = last_row_;
+  const int row = shot_row_ = last_row_;
   while (x_[row] < limit && pivots_ < 4 * kMaxPivots) {
     y_ = -inverse_.row(row);
     const Price best = DearestContact(y_);
@@ -319,6 +320,28 @@ double Simplex::Shoot(const Vector6d& rate, double limit) {
   }
   reached_ = x_[row];
   return std::min(reached_, limit);
+}
+
+// One step of iterative refinement: the inverse is good enough for a correction.
+void Simplex::Polish() {
+  if (shot_row_ < 0) return;
+  Vector6d rest = Vector6d::Zero();
+  rest.head<3>() = c_.v_f;
+  for (const WeightedGenerator& g : held_) rest -= g.weight * g.generator.wrench;
+  for (int k = 0; k < 6; ++k) {
+    if (k == shot_row_) {
+      rest += x_[k] * rate_;
+    } else if (column_[k].contact >= 0) {
+      rest -= x_[k] * column_[k].wrench;
+    } else {
+      for (int j = 0; j < 6; ++j) rest -= x_[k] * kBaseWeight[j] * balance_->base[j].wrench;
+    }
+  }
+  x_ += inverse_ * rest;
+  for (int k = 0; k < 6; ++k) {
+    if (k != shot_row_) x_[k] = std::max(0.0, x_[k]);
+  }
+  reached_ = x_[shot_row_];
 }
 
 std::vector<WeightedGenerator> Simplex::Forces(std::array<double, 6>* base_weight) const {

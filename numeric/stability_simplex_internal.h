@@ -48,6 +48,9 @@ class Simplex {
   /** The rate of the wrench as the centre of mass moves by multiples of d lengths. */
   Vector6d ShiftRate(const Eigen::Vector3d& d) const;
 
+  /** Takes the rounding that its pivots have gathered out of the weights after a Shoot. */
+  void Polish();
+
   /** How far the last Shoot has forces for: the distance it returned, or more or less than `limit`.
    */
   double reached() const { return reached_; }
@@ -110,6 +113,8 @@ class Simplex {
   Shift shift_[2];
   int num_shifts_ = 0;
   int last_row_ = -1;  // of the last pivot of Enter
+  int shot_row_ = -1;  // of the column that Shoot added, if it is basic
+  Vector6d rate_ = Vector6d::Zero();
   double reached_ = 0;
   std::vector<WeightedGenerator> held_;  // not in the basis, left at a weight by a ray
   int pivots_ = 0;
