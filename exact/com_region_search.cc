@@ -16,21 +16,6 @@ using internal::Generators;
 
 const Rational kFar = 128;  // m
 
-/** Two vectors normal to up and to each other, about as long as 1. */
-std::array<Vector3q, 2> PlaneAxes(const Vector3q& up) {
-  int axis = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (abs(up[k]) < abs(up[axis])) axis = k;
-  }
-  Vector3q unit = Vector3q::Zero();
-  unit[axis] = 1;
-  std::array<Vector3q, 2> axes;
-  axes[0] = Cross(unit, up);
-  axes[1] = Cross(up, axes[0]);
-  for (Vector3q& e : axes) e = Scaled(Lift(NearestDouble(1 / SqrtUp(SquaredNorm(e)))), e);
-  return axes;
-}
-
 /** max d.delta over delta = (x_N - x_N+1) e1 + (x_N+2 - x_N+3) e2 with sum x_j a_j - (0, delta x w)
  = (w, 0). */
 class DisplacementProgram {

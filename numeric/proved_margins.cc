@@ -154,35 +154,6 @@ void Proof::AddSeparators(const std::vector<Vector6d>& wrenches) {
   }
 }
 
-/** Of the supporting lines that nearest to 0 or, where 0 is outside, farthest behind it, and there
- the positive combination of two lines that is normal to the way from 0 to their corner. */
-std::vector<Vector6d> BindingWrenches(const RegionExplorer& explorer) {
-  const std::vector<BoundaryPoint>& points = explorer.points();
-  const BoundaryPoint* least = nullptr;
-  for (const BoundaryPoint& point : points) {
-    if (point.y.isZero(0)) continue;
-    if (!least || point.offset < least->offset) least = &point;
-  }
-  if (!least) return {};
-  std::vector<Vector6d> wrenches{least->y};
-  if (least->offset >= 0) return wrenches;
-  double nearest = kInfinity;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const BoundaryPoint &a = points[i], &b = points[(i + 1) % points.size()];
-    const auto corner = internal::Corner(a, b);
-    if (!corner || corner->norm() >= nearest || a.y.isZero(0) || b.y.isZero(0)) continue;
-    // -corner = s a.h + t b.h, both multipliers by Cramer's rule.
-    const double det = internal::Cross2(a.h, b.h);
-    const double s = internal::Cross2(-*corner, b.h) / det;
-    const double t = internal::Cross2(a.h, -*corner) / det;
-    if (!(s > 0 && t > 0)) continue;
-    nearest = corner->norm();
-    wrenches.resize(1);
-    wrenches.push_back(s * a.y / explorer.LineLength(a) + t * b.y / explorer.LineLength(b));
-  }
-  return wrenches;
-}
-
 }  // namespace
 
 ProvedComMargin ProveComMargin(const StabilityQuery& query, const RegionOptions& options,
@@ -196,7 +167,9 @@ ProvedComMargin ProveComMargin(const StabilityQuery& query, const RegionOptions&
     result.direction_W = margin.direction_W;
     if (std::isfinite(margin.lo) || !proof.AddClosure()) {
       proof.AddCorners();
-      proof.AddSeparators(BindingWrenches(proof.explorer()));
+      std::vector<Vector6d> wrenches;
+      for (const auto& line : internal::BindingLines(proof.explorer())) wrenches.push_back(line.y);
+      proof.AddSeparators(wrenches);
     }
   }
   result.proof = proof.Take();

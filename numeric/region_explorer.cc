@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 
 #include "cguide/numeric/region_explorer_internal.h"
 
@@ -118,6 +119,35 @@ void RegionExplorer::Refine(std::size_t i) {
   point.curved = aim && (point.p - *corner).norm() > 1e-9 * d.norm();
   points_[i].curved = point.curved;
   points_.insert(points_.begin() + i + 1, point);
+}
+
+std::vector<BindingLine> BindingLines(const RegionExplorer& explorer) {
+  const std::vector<BoundaryPoint>& points = explorer.points();
+  const auto line = [&](const BoundaryPoint& point) {
+    return BindingLine{point.y / explorer.LineLength(point), point.h, point.offset};
+  };
+  const BoundaryPoint* least = nullptr;
+  for (const BoundaryPoint& point : points) {
+    if (point.y.isZero(0)) continue;
+    if (!least || point.offset < least->offset) least = &point;
+  }
+  if (!least) return {};
+  std::vector<BindingLine> lines{line(*least)};
+  if (least->offset >= 0) return lines;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const BoundaryPoint &a = points[i], &b = points[(i + 1) % points.size()];
+    const auto corner = Corner(a, b);
+    if (!corner || corner->norm() >= nearest || a.y.isZero(0) || b.y.isZero(0)) continue;
+    // -corner/|corner| = s a.h + t b.h, both multipliers by Cramer's rule.
+    const Vector2d h = -corner->normalized();
+    const double det = Cross2(a.h, b.h), s = Cross2(h, b.h) / det, t = Cross2(a.h, h) / det;
+    if (!(s > 0 && t > 0)) continue;
+    nearest = corner->norm();
+    lines.resize(1);
+    lines.push_back({s * line(a).y + t * line(b).y, h, s * a.offset + t * b.offset});
+  }
+  return lines;
 }
 
 }  // namespace cguide::numeric::internal

@@ -65,6 +65,9 @@ class RegionExplorer {
    i of the polygon, or through its middle. */
   void Refine(std::size_t i);
 
+  /** A shot at the boundary on the ray from inside() through q, not kept among the points. */
+  BoundaryPoint ShootAt(const Eigen::Vector2d& q) { return Shoot((q - inside_).normalized()); }
+
   /** Of the shots, where evidence is kept; the state at inside() is `inner_balance`. */
   const std::vector<FloatBalance>& balances() const { return balances_; }
   FloatBalance inner_balance() const { return BalanceAt(inside_, *start_); }
@@ -92,6 +95,18 @@ class RegionExplorer {
  second returns the gap. */
 ComMargin ExploreMargin(const MarginOptions& options, RegionExplorer* region);
 double ExploreRegion(const MarginOptions& options, RegionExplorer* region);
+
+/** A line through wrench y with outward normal h, |h| = 1, h.q <= offset. */
+struct BindingLine {
+  Vector6d y = Vector6d::Zero();  ///< scaled as h
+  Eigen::Vector2d h = Eigen::Vector2d::Zero();
+  double offset = 0;
+};
+
+/** Of the supporting lines that nearest to 0 or, where 0 is outside, farthest before it, and there
+ the positive combination of two that is normal to the way from 0 to their corner. The last one
+ binds. Evidence has been kept. */
+std::vector<BindingLine> BindingLines(const RegionExplorer& explorer);
 
 /** Indices of the points that are corners of the polygon. */
 std::vector<std::size_t> ProperCorners(const std::vector<BoundaryPoint>& points);
