@@ -8,7 +8,7 @@
 
 #include "cguide/exact/com_region_search.h"
 #include "cguide/exact/core/error.h"
-#include "cguide/exact/linear_algebra.h"
+#include "cguide/exact/wrench_polyhedra.h"
 #include "cguide/numeric/region_prover_internal.h"
 
 namespace cguide::numeric {
@@ -69,7 +69,7 @@ class Proof {
   void Search();
   /** Whether force closure was proved. */
   bool AddClosure();
-  void AddCorners();
+  void AddCorners(bool proper_only);
   /** Made safe and checked; else, those of the exact twin. */
   void AddSeparators(const std::vector<Vector6d>& wrenches);
   ProvedRegion Take() { return {std::move(lifted_), std::move(evidence_), std::move(region_)}; }
@@ -121,8 +121,14 @@ bool Proof::TryCorners(const std::vector<std::size_t>& kept, double reach) {
   return true;
 }
 
-void Proof::AddCorners() {
-  const std::vector<std::size_t> kept = DistinctPoints(explorer_.points());
+void Proof::AddCorners(bool proper_only) {
+  const std::vector<BoundaryPoint>& points = explorer_.points();
+  std::vector<std::size_t> kept = DistinctPoints(points);
+  if (proper_only) {
+    const std::vector<std::size_t> proper = internal::ProperCorners(points);
+    std::erase_if(
+        kept, [&](std::size_t i) { return !std::binary_search(proper.begin(), proper.end(), i); });
+  }
   for (double reach = 1; reach < 1e6; reach *= 32) {
     if (TryCorners(kept, reach)) return;
   }
@@ -166,7 +172,7 @@ ProvedComMargin ProveComMargin(const StabilityQuery& query, const RegionOptions&
     const ComMargin margin = internal::ExploreMargin(options.margins, &proof.explorer());
     result.direction_W = margin.direction_W;
     if (std::isfinite(margin.lo) || !proof.AddClosure()) {
-      proof.AddCorners();
+      proof.AddCorners(false);
       std::vector<Vector6d> wrenches;
       for (const auto& line : internal::BindingLines(proof.explorer())) wrenches.push_back(line.y);
       proof.AddSeparators(wrenches);
@@ -189,7 +195,7 @@ ProvedSupportRegion ProveSupportRegion(const StabilityQuery& query, const Region
       if (!point.y.isZero(0)) wrenches.push_back(point.y);
     }
     if (!wrenches.empty() || !proof.AddClosure()) {
-      proof.AddCorners();
+      proof.AddCorners(true);
       proof.AddSeparators(wrenches);
     }
   }
@@ -205,6 +211,16 @@ ProvedSupportRegion ProveSupportRegion(const StabilityQuery& query, const Region
     result.inner_W.emplace_back(NearestDouble(p[0]), NearestDouble(p[1]), NearestDouble(p[2]));
   }
   return result;
+}
+
+std::optional<exact::Enclosure> ProveForceMargin(const StabilityQuery& query, int max_generators) {
+  for (const Contact& contact : query.contacts) {
+    if (contact.n_W.isZero(0)) return std::nullopt;
+  }
+  const LiftedQuery lifted = LiftCertain(query);
+  const auto cone = exact::InscribedCone(lifted.query, query.generators);
+  if (static_cast<int>(cone.wrenches.size()) > max_generators) return std::nullopt;
+  return exact::ForceMargin(lifted.query, exact::WrenchFacets(cone));
 }
 
 }  // namespace cguide::numeric

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "cguide/exact/com_region.h"
@@ -61,5 +62,13 @@ struct ProvedSupportRegion {
 
 ProvedSupportRegion ProveSupportRegion(const StabilityQuery& query, const RegionOptions& options,
                                        StabilityWorkspace* workspace);
+
+/** `force` against the inscribed pyramids of query.generators sides of the certain contacts (see
+ exact::InscribedCone: normals' errors are carried, those of the contacts' positions are not), by
+ all facets of their exact cone: milliseconds for one foot, a tenth of a second for eight patches of
+ four sides, more for more sides. Nothing where the generators are more than max_generators, or a
+ normal vanishes. A lower bound of the same number for the revolution cones. */
+std::optional<exact::Enclosure> ProveForceMargin(const StabilityQuery& query,
+                                                 int max_generators = 192);
 
 }  // namespace cguide::numeric

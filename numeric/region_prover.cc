@@ -83,6 +83,7 @@ exact::ContactForce RegionProver::Lifted(const Column& column, double scale) con
 
 bool RegionProver::SetBase(const RegionExplorer& explorer) {
   inner_ = explorer.inner_balance();
+  points_ = &explorer.points();
   Matrix6d B;
   for (int k = 0; k < 6; ++k) {
     base_[k] = ToColumn(workspace_->scratch->balance.base[k], 1);
@@ -178,37 +179,43 @@ double RegionProver::Support(int contact, const Vector6d& y, double* slack) cons
   return along + c.friction * (g - along * c.n_W).norm();
 }
 
-// A perceptron: adds the normalised generator that is served worst until all are served.
-bool RegionProver::FindPole() {
-  constexpr int kSteps = 4000, kPolish = 60;
-  const int count = static_cast<int>(lifted_.contact.size());
-  pole_sought_ = true;
-  Vector6d z = Vector6d::Zero();
-  for (int i = 0; i < count; ++i) {
-    const Eigen::Vector3d n = query_.contacts[lifted_.contact[i]].n_W;
-    z += WrenchOf({i, n, 1}) / count;
+// The contact whose generators z serves worst, and how well, per length of z.
+RegionProver::Worst RegionProver::FindWorst(const Vector6d& z) const {
+  Worst worst;
+  for (int i = 0; i < static_cast<int>(lifted_.contact.size()); ++i) {
+    double slack = 0;
+    const double value = -Support(i, -z, &slack) - slack;
+    if (worst.contact < 0 || value < worst.value) worst = {i, value};
   }
-  for (int step = 0; step < kSteps; ++step) {
-    double worst = std::numeric_limits<double>::infinity(), worst_slack = 0;
-    int at = -1;
-    for (int i = 0; i < count; ++i) {
-      double slack = 0;
-      const double value = -Support(i, -z, &slack);
-      if (value < worst) worst = value, worst_slack = slack, at = i;
-    }
-    if (at < 0) return false;
-    const double quality = (worst - worst_slack) / z.norm();
-    if (quality > 0 && (!pole_ || quality > pole_value_)) {
+  worst.value /= z.norm();
+  return worst;
+}
+
+// The mean of separators, turned round, touches no generator that one of them does not touch. A
+// perceptron improves on it: it adds the normalised generator that is served worst.
+bool RegionProver::FindPole() {
+  constexpr int kSteps = 2000, kPolish = 60;
+  constexpr double kGood = 0.3;
+  pole_sought_ = true;
+  if (lifted_.contact.empty()) return false;
+  Vector6d z = Vector6d::Zero();
+  for (const BoundaryPoint& point : *points_) {
+    if (!point.y.isZero(0)) z -= point.y.normalized();
+  }
+  for (int step = 0; step < kSteps && z.norm() > 0; ++step) {
+    const Worst worst = FindWorst(z);
+    if (worst.value > 0 && (!pole_ || worst.value > pole_value_)) {
       pole_ = z / z.norm();
-      pole_value_ = quality;
+      pole_value_ = worst.value;
     }
-    if (pole_ && (step >= kPolish || pole_value_ > 0.3)) return true;
-    const Contact& c = query_.contacts[lifted_.contact[at]];
+    if (pole_ && (step >= kPolish || pole_value_ > kGood)) return true;
+    const Contact& c = query_.contacts[lifted_.contact[worst.contact]];
     const Eigen::Vector3d r = c.force_point_W() - query_.com_W;
     const Eigen::Vector3d g = -(z.head<3>() + z.tail<3>().cross(r));
     Eigen::Vector3d t = g - g.dot(c.n_W) * c.n_W;
     if (t.norm() > 0) t.normalize();
-    z += WrenchOf({at, c.n_W + c.friction * t, 1}).normalized();
+    const Vector6d added = WrenchOf({worst.contact, c.n_W + c.friction * t, 1}).normalized();
+    z += std::max(1e-3 * z.norm(), 2 * std::abs(worst.value) * z.norm()) * added;
   }
   return pole_.has_value();
 }

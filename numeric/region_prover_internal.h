@@ -23,7 +23,7 @@ class RegionProver {
   RegionProver(const StabilityQuery& query, const Eigen::Vector3d& up, const LiftedQuery& lifted,
                StabilityWorkspace* workspace);
 
-  /** Fixes the base; false where its inverse is no use. */
+  /** Fixes the base and remembers the explorer; false where its inverse is no use. */
   bool SetBase(const RegionExplorer& explorer);
 
   exact::WrenchBasis basis() const;
@@ -46,6 +46,12 @@ class RegionProver {
   exact::ContactForce Lifted(const Column& column, double scale) const;
   Eigen::Vector3d InPlane(const Eigen::Vector2d& q) const;
   Vector3q ExactInPlane(const Eigen::Vector2d& q) const;
+  struct Worst {
+    int contact = -1;
+    double value = 0;
+  };
+
+  Worst FindWorst(const Vector6d& z) const;
   bool FindPole();
   /** Of y.a over the contact's cone widened for errors, u.n = 1: its largest value, and the
    rounding and errors in it. */
@@ -59,6 +65,7 @@ class RegionProver {
   std::array<Column, 6> base_;
   Matrix6d inverse_;
   FloatBalance inner_;
+  const std::vector<BoundaryPoint>* points_ = nullptr;
   std::optional<Vector6d> pole_;  // z
   double pole_value_ = 0;         // least z.a over u.n = 1
   bool pole_sought_ = false;

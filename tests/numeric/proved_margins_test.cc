@@ -40,7 +40,7 @@ TEST_CASE("The proved com margin encloses what floats find, tightly") {
   StabilityWorkspace workspace;
   Rng rng(601);
   int finite = 0, negative = 0, positive = 0, wide = 0, closure = 0, rough = 0;
-  for (int i = 0; i < 900; ++i) {
+  for (int i = 0; i < 1500; ++i) {
     Stance stance = RandomStance(1 + i % 4, rng);
     StabilityQuery query = stance.Query();
     if (i % 3 == 0) {
@@ -66,8 +66,10 @@ TEST_CASE("The proved com margin encloses what floats find, tightly") {
     }
     ++finite;
     ++(margin.lo > 0 ? positive : negative);
-    // Where the float's own tolerance was not met, neither is the proof tighter.
-    wide += proved.com_m.hi - proved.com_m.lo > 1e-8 + 2 * (margin.hi - margin.lo);
+    // Where the float's own tolerance was not met, neither is the proof tighter; an error of 1e-11 m
+    // at a distance of 20 mm turns a normal by 1e-9.
+    const double width = proved.com_m.hi - proved.com_m.lo - 2 * (margin.hi - margin.lo);
+    wide += width > (i % 3 == 0 ? 1e-6 : 1e-9);
     // A verdict by another way agrees.
     const Verdict verdict = TryStability(query, &workspace).verdict;
     if (verdict == Verdict::kHolds) CHECK(proved.com_m.hi > 0);
@@ -75,12 +77,12 @@ TEST_CASE("The proved com margin encloses what floats find, tightly") {
     if (proved.com_m.lo > 0) CHECK(verdict != Verdict::kFails);
     if (proved.com_m.hi < 0) CHECK(verdict != Verdict::kHolds);
   }
-  CHECK(finite > 800);
+  CHECK(finite > 1300);
   CHECK(negative > 200);
   CHECK(positive > 100);
   CHECK(closure > 0);
   CHECK(rough > 200);
-  CHECK(wide <= 9);
+  CHECK(wide == 0);
 }
 
 TEST_CASE("The proved margin of a flat foot is its distance from the rectangle") {
