@@ -138,22 +138,22 @@ std::string Vector(const Eigen::Vector3d& v) {
   return "[" + Short(v.x()) + " " + Short(v.y()) + " " + Short(v.z()) + "]";
 }
 
-/** The enclosure with six digits, rounded outwards: "[12.3456, 12.3457]". */
+/** The value in the unit with so many digits, rounded up or down. */
+std::string Rounded(double value, double unit, int digits, bool up) {
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  if (value == 0) return "0";
+  const double scaled = value / unit;
+  const double step = std::pow(10.0, std::floor(std::log10(std::abs(scaled))) + 1 - digits);
+  // Quotient and power may be off by an ulp or so: a hundredth of a step more.
+  const double steps = up ? std::ceil(scaled / step + 0.01) : std::floor(scaled / step - 0.01);
+  std::ostringstream out;
+  out.precision(digits);
+  out << steps * step;
+  return out.str();
+}
+
 std::string Enclosed(const exact::Enclosure& x, double unit) {
-  const auto text = [unit](double value, bool up) {
-    if (std::isinf(value)) return std::string(value > 0 ? "inf" : "-inf");
-    const double scaled = value / unit;
-    const double digit =
-        scaled == 0 ? 1 : std::pow(10.0, std::floor(std::log10(std::abs(scaled))) - 5);
-    // The quotient and the power may be off by an ulp or so: a hundredth of a digit more.
-    double steps = up ? std::ceil(scaled / digit + 0.01) : std::floor(scaled / digit - 0.01);
-    if (scaled == 0) steps = 0;
-    std::ostringstream out;
-    out.precision(7);
-    out << steps * digit;
-    return out.str();
-  };
-  return "[" + text(x.lo, false) + ", " + text(x.hi, true) + "]";
+  return "[" + Rounded(x.lo, unit, 8, false) + ", " + Rounded(x.hi, unit, 8, true) + "]";
 }
 
 std::string ContactName(const Model& model, const numeric::Contact& contact) {
@@ -171,7 +171,9 @@ void PrintForces(const Answer& answer) {
   if (answer.distribution) {
     std::cout << "forces that balance it, checked exactly (N)\n";
     for (std::size_t i = 0; i < answer.contacts.size(); ++i) {
-      const Eigen::Vector3d& f = answer.distribution->force_W[i];
+      // Shown to a tenth of a millinewton.
+      const Eigen::Vector3d f =
+          (answer.distribution->force_W[i] * 1e4).array().round() * 1e-4 + 0.0;  // no -0
       if (f.isZero(0)) continue;
       std::cout << "  " << Vector(f) << " at " << Vector(answer.contacts[i].force_point_W())
                 << '\n';
@@ -192,9 +194,8 @@ void PrintRegion(const numeric::ProvedSupportRegion& region) {
   if (region.whole_plane) std::cout << what << ": the whole plane, checked exactly\n";
   if (region.inner_W.empty()) return;
   std::cout << what << ", complete "
-            << (std::isinf(region.gap)
-                    ? "on no side"
-                    : "within " + Enclosed({0, region.gap}, 1e-3).substr(4) + " mm")
+            << (std::isinf(region.gap) ? "on no side"
+                                       : "within " + Rounded(region.gap, 1e-3, 2, true) + " mm")
             << ", checked exactly (m)\n";
   for (const Eigen::Vector3d& p : region.inner_W) {
     std::cout << "  " << Short(p.x()) << ' ' << Short(p.y()) << '\n';
