@@ -16,6 +16,7 @@ using Eigen::Vector2d;
 using internal::BoundaryPoint;
 using internal::Corner;
 using internal::Cross2;
+using internal::DistanceFromSegment;
 using internal::kReach;
 using internal::RegionExplorer;
 
@@ -29,13 +30,6 @@ double Gap(const BoundaryPoint& a, const BoundaryPoint& b) {
   const auto corner = Corner(a, b);
   if (!corner) return kReach;
   return std::max(0.0, Cross2(*corner - a.p, edge) / length);
-}
-
-double DistanceFromSegment(const Vector2d& a, const Vector2d& b) {
-  const Vector2d edge = b - a;
-  const double squared = edge.squaredNorm();
-  const double t = squared > 0 ? std::clamp(-a.dot(edge) / squared, 0.0, 1.0) : 0;
-  return (a + t * edge).norm();
 }
 
 // For an origin outside the region: its distance from the polygon of corners; 0 where that is open.

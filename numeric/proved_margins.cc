@@ -1,6 +1,7 @@
 #include "cguide/numeric/proved_margins.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -48,6 +49,39 @@ std::vector<std::size_t> DistinctPoints(const std::vector<BoundaryPoint>& points
   return kept;
 }
 
+/** Of a polygon's corners those that its least distance from 0 needs: where 0 is inside, corners
+ are left out while the chords keep that distance; else the ends of the nearest side. */
+void KeepForMargin(const std::vector<BoundaryPoint>& points, double lo,
+                   std::vector<std::size_t>* kept) {
+  const auto distance = [&](std::size_t i, std::size_t j) {
+    const Eigen::Vector2d &a = points[i].p, &b = points[j].p;
+    return internal::Cross2(a, b) / (b - a).norm();
+  };
+  if (lo > 0) {
+    for (std::size_t k = 0; k < kept->size() && kept->size() > 3;) {
+      const std::size_t n = kept->size();
+      const std::size_t before = (*kept)[(k + n - 1) % n], after = (*kept)[(k + 1) % n];
+      if (distance(before, after) > lo) {
+        kept->erase(kept->begin() + static_cast<std::ptrdiff_t>(k));
+      } else {
+        ++k;
+      }
+    }
+    return;
+  }
+  std::array<std::size_t, 2> best{};
+  double nearest = kInfinity;
+  for (std::size_t k = 0; k < kept->size(); ++k) {
+    const std::size_t i = (*kept)[k], j = (*kept)[(k + 1) % kept->size()];
+    const double d = internal::DistanceFromSegment(points[i].p, points[j].p);
+    if (d >= nearest) continue;
+    nearest = d;
+    best = {i, j};
+  }
+  *kept = {best[0]};
+  if (best[1] != best[0]) kept->push_back(best[1]);
+}
+
 /** What the explorer found, as evidence that checks, in the two halves of a region. */
 class Proof {
  public:
@@ -69,7 +103,8 @@ class Proof {
   void Search();
   /** Whether force closure was proved. */
   bool AddClosure();
-  void AddCorners(bool proper_only);
+  /** All proper corners, or those that a com margin needs. */
+  void AddCorners(std::optional<double> com_margin);
   /** Made safe and checked; else, those of the exact twin. */
   void AddSeparators(const std::vector<Vector6d>& wrenches);
   ProvedRegion Take() { return {std::move(lifted_), std::move(evidence_), std::move(region_)}; }
@@ -121,10 +156,12 @@ bool Proof::TryCorners(const std::vector<std::size_t>& kept, double reach) {
   return true;
 }
 
-void Proof::AddCorners(bool proper_only) {
+void Proof::AddCorners(std::optional<double> com_margin) {
   const std::vector<BoundaryPoint>& points = explorer_.points();
   std::vector<std::size_t> kept = DistinctPoints(points);
-  if (proper_only) {
+  if (com_margin) {
+    KeepForMargin(points, *com_margin, &kept);
+  } else {
     const std::vector<std::size_t> proper = internal::ProperCorners(points);
     std::erase_if(
         kept, [&](std::size_t i) { return !std::binary_search(proper.begin(), proper.end(), i); });
@@ -172,7 +209,7 @@ ProvedComMargin ProveComMargin(const StabilityQuery& query, const RegionOptions&
     const ComMargin margin = internal::ExploreMargin(options.margins, &proof.explorer());
     result.direction_W = margin.direction_W;
     if (std::isfinite(margin.lo) || !proof.AddClosure()) {
-      proof.AddCorners(false);
+      proof.AddCorners(margin.lo);
       std::vector<Vector6d> wrenches;
       for (const auto& line : internal::BindingLines(proof.explorer())) wrenches.push_back(line.y);
       proof.AddSeparators(wrenches);
@@ -195,7 +232,7 @@ ProvedSupportRegion ProveSupportRegion(const StabilityQuery& query, const Region
       if (!point.y.isZero(0)) wrenches.push_back(point.y);
     }
     if (!wrenches.empty() || !proof.AddClosure()) {
-      proof.AddCorners(true);
+      proof.AddCorners(std::nullopt);
       proof.AddSeparators(wrenches);
     }
   }

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -30,6 +31,13 @@ std::optional<Vector2d> Corner(const BoundaryPoint& a, const BoundaryPoint& b) {
   }
   return Vector2d((a.offset * b.h[1] - b.offset * a.h[1]) / det,
                   (b.offset * a.h[0] - a.offset * b.h[0]) / det);
+}
+
+double DistanceFromSegment(const Vector2d& a, const Vector2d& b) {
+  const Vector2d edge = b - a;
+  const double squared = edge.squaredNorm();
+  const double t = squared > 0 ? std::clamp(-a.dot(edge) / squared, 0.0, 1.0) : 0;
+  return (a + t * edge).norm();
 }
 
 RegionExplorer::RegionExplorer(const StabilityQuery& query, StabilityWorkspace* workspace,

@@ -40,6 +40,9 @@ inline double Cross2(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a[0] * b[1] - a[1] * b[0];
 }
 
+/** Of the origin from the segment ab. */
+double DistanceFromSegment(const Eigen::Vector2d& a, const Eigen::Vector2d& b);
+
 /** Where the supporting lines of two neighbours meet: the region lies within the polygon of these
  corners. Where the lines (nearly) coincide any point of theirs between the two will do; where they
  turn by half a turn or more there is no corner. */
