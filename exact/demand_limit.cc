@@ -67,6 +67,12 @@ PyramidCone InscribedCone(const EquilibriumQuery& query, int sides) {
   return {std::move(generators.forces), std::move(generators.wrenches)};
 }
 
+std::optional<PyramidCone> CircumscribedCone(const EquilibriumQuery& query, int sides) {
+  auto wrenches = internal::OuterGenerators(query, sides);
+  if (!wrenches) return std::nullopt;
+  return PyramidCone{{}, std::move(*wrenches)};
+}
+
 DemandLimit FindDemandLimit(const PyramidCone& cone, const DemandFamily& family,
                             std::span<const int> start) {
   Require(family.directions.size() == family.objective.size(),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,12 @@ struct PyramidCone {
  Every force is admissible, so what such a cone supplies the revolution cones supply too.
  @throws Error unless sides >= 3 and no normal vanishes. */
 PyramidCone InscribedCone(const EquilibriumQuery& query, int sides);
+
+/** Circumscribed pyramids of all contacts, widened for their errors, at every arm the errors allow:
+ a cone that holds every wrench the contacts can supply, so that its limits bound the revolution
+ cones' from above as those of InscribedCone do from below. Wrenches alone, without forces. Nothing
+ where the error of a normal is too large. */
+std::optional<PyramidCone> CircumscribedCone(const EquilibriumQuery& query, int sides);
 
 /** The demands v + sum_k z_k directions_k, z in R^n, and what is sought among those in the cone:
  the largest objective.z. */

@@ -68,7 +68,8 @@ void Tableau::Pivot(int row, int entering, const VectorXq& alpha) {
   ++pivots_;
 }
 
-// Brings the columns in one by one, each in the first row of an artificial one where it can.
+// Brings the columns in one by one, each in the first row of an artificial one where it can. An
+// artificial column may be a unit vector or its opposite, whichever has a weight >= 0.
 bool Tableau::TryStart(std::span<const int> start) {
   for (const int column : start) {
     if (column < 0 || column >= static_cast<int>(program_.columns.size())) return false;
@@ -79,7 +80,10 @@ bool Tableau::TryStart(std::span<const int> start) {
     Pivot(row, column, alpha);
   }
   for (int i = 0; i < m_; ++i) {
-    if (x_[i] < 0 || (basis_[i] == kArtificial && x_[i] != 0)) return false;
+    if (x_[i] >= 0) continue;
+    if (basis_[i] != kArtificial) return false;
+    x_[i] = -x_[i];
+    for (Eigen::Index k = 0; k < m_; ++k) inverse_(i, k) = -inverse_(i, k);
   }
   return true;
 }

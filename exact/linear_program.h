@@ -36,7 +36,8 @@ struct ProgramSolution {
  enter by the largest price, and by Bland's rule [1977] after a run of degenerate pivots, until one
  moves: so it ends on every input.
  @param start columns of a basis to start from, for example one that a float code found; used if it
- is regular and feasible, else ignored.
+ is regular and its weights are >= 0, else ignored. Fewer columns than equations may do: the rest is
+ left to the first phase.
  @throws Error where sizes differ or b is empty.
  @post CheckProgramSolution(program, result). */
 ProgramSolution SolveLinearProgram(const LinearProgram& program, std::span<const int> start = {});

@@ -1,6 +1,7 @@
 #include "cguide/numeric/demand_limit.h"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 
 #include "cguide/numeric/friction.h"
@@ -34,11 +35,10 @@ class FloatProgram {
     for (int i = 0; i < 6; ++i) inverse_(i, i) = b_[i] < 0 ? -1 : 1;
     x_ = b_.cwiseAbs();
     basis_.assign(6, -1);
-    if (!Run(true)) return {};
-    for (int i = 0; i < 6; ++i) {
-      if (basis_[i] < 0 && x_[i] > kZero) return {};
-    }
-    if (!Run(false)) return {};
+    Run(true);
+    bool feasible = true;
+    for (int i = 0; i < 6; ++i) feasible = feasible && (basis_[i] >= 0 || x_[i] <= kZero);
+    if (feasible) Run(false);
     std::vector<int> basis;
     for (const int j : basis_) {
       if (j >= 0) basis.push_back(j);
@@ -56,8 +56,8 @@ class FloatProgram {
     prices_.push_back(norm > 0 ? price / norm : price);
   }
 
-  // False where it does not end or has no bound.
-  bool Run(bool first) {
+  // Up to the optimum, or where there is no bound.
+  void Run(bool first) {
     for (int pivot = 0; pivot < kMaxPivots; ++pivot) {
       Vector6d cost;
       for (int i = 0; i < 6; ++i) {
@@ -70,10 +70,8 @@ class FloatProgram {
         const double gain = (first ? 0 : prices_[j]) - y.dot(columns_[j]);
         if (gain > dearest) dearest = gain, entering = static_cast<int>(j);
       }
-      if (entering < 0) return true;
-      if (!Enter(entering)) return false;
+      if (entering < 0 || !Enter(entering)) return;
     }
-    return false;
   }
 
   bool Enter(int entering) {

@@ -84,6 +84,39 @@ TEST_CASE("Force closure allows every acceleration, no contact allows none but g
   }
 }
 
+TEST_CASE("Inscribed and circumscribed pyramids enclose the sliding limit of the revolution cone") {
+  // Low over a foot it slides: the true limit is mu g in every direction.
+  EquilibriumQuery query =
+      Foot(Rational(1, 8), Rational(1, 16), Rational(1, 2), {0, 0, Rational(1, 1000)});
+  const Vector3q d(Rational(3, 5), Rational(4, 5), 0);
+  const Rational slides(981, 200);
+  Rational last_lo = 0, last_hi = 100;
+  for (const int sides : {4, 8, 16, 32}) {
+    const auto outer = CircumscribedCone(query, sides);
+    REQUIRE(outer);
+    const Rational lo = Limit(InscribedCone(query, sides), AccelerationFamily(query, d)).value;
+    const Rational hi = Limit(*outer, AccelerationFamily(query, d)).value;
+    CHECK(lo <= slides);
+    CHECK(hi >= slides);
+    CHECK(lo >= last_lo);
+    CHECK(hi <= last_hi);
+    last_lo = lo;
+    last_hi = hi;
+  }
+  CHECK(last_hi - last_lo < Rational(1, 20));
+  // Errors widen what is possible and narrow what is certain.
+  for (ExactContact& contact : query.contacts) {
+    contact.error_p = Rational(1, 1000);
+    contact.error_w = Rational(1, 1000);
+  }
+  const auto rough = CircumscribedCone(query, 32);
+  REQUIRE(rough);
+  CHECK(Limit(*rough, AccelerationFamily(query, d)).value > last_hi);
+  CHECK(Limit(InscribedCone(query, 32), AccelerationFamily(query, d)).value < last_lo);
+  query.contacts[0].error_w = 1;
+  CHECK_FALSE(CircumscribedCone(query, 4));
+}
+
 TEST_CASE("On random stances supply ends at the limit, and altered limits are refused") {
   std::mt19937 rng(41);
   int optimal = 0, infeasible = 0;

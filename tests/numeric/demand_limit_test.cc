@@ -1,5 +1,6 @@
 #include "cguide/numeric/demand_limit.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "cguide/numeric/proved_margins.h"
@@ -29,8 +30,10 @@ TEST_CASE("Limits found from a float basis are those of the exact twin") {
     optimal += limit.status == exact::ProgramStatus::kOptimal;
     infeasible += limit.status == exact::ProgramStatus::kInfeasible;
     unbounded += limit.status == exact::ProgramStatus::kUnbounded;
-    const std::vector<int> basis = ProposeLimitBasis(cone, family);
-    proposed += !basis.empty() && basis == limit.basis;
+    std::vector<int> basis = ProposeLimitBasis(cone, family), last = limit.basis;
+    std::sort(basis.begin(), basis.end());
+    std::sort(last.begin(), last.end());
+    proposed += !basis.empty() && basis == last;
   }
   CAPTURE(optimal, infeasible, unbounded, proposed);
   CHECK(optimal > 30);
@@ -47,7 +50,8 @@ TEST_CASE("A foot's limits on ties of the program") {
   for (Contact& contact : stance.contacts) contact.normal_error = 0;
   const LiftedQuery lifted = LiftCertain(stance.Query());
   const exact::PyramidCone cone = exact::InscribedCone(lifted.query, 4);
-  const auto limit = numeric::FindDemandLimit(cone, exact::DisplacementFamily(lifted.query, {1, 0, 0}));
+  const auto limit =
+      numeric::FindDemandLimit(cone, exact::DisplacementFamily(lifted.query, {1, 0, 0}));
   CHECK(limit.value == Rational(1, 8));
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/exact/linear_algebra.h"
 #include "tests/numeric/stability_cases.h"
 
 namespace cguide::numeric {
@@ -157,6 +158,87 @@ TEST_CASE("Rank-deficient and empty contact sets are answered") {
   m = ProveComMargin(stance.Query(), {}, &workspace).com_m;
   CHECK(m.lo == -kInfinity);
   CHECK(m.hi == Approx(-0.5).margin(1e-6));
+}
+
+TEST_CASE("Altered evidence from floats is refused") {
+  StabilityWorkspace workspace;
+  Rng rng(609);
+  int altered = 0, cutting = 0;
+  for (int i = 0; i < 12; ++i) {
+    const Stance stance = RandomStance(1 + i % 3, rng);
+    const ProvedSupportRegion region =
+        ProveSupportRegion(stance.Query(), {{1e-3, 12}, {}}, &workspace);
+    if (region.inner_W.empty()) continue;
+    const auto& query = region.proof.lifted.query;
+    const Vector3q up = region.proof.region.up;
+    const auto refused = [&](const exact::ComRegionEvidence& evidence) {
+      ++altered;
+      return !exact::CheckComRegion(query, up, evidence);
+    };
+    const exact::ComRegionEvidence& good = region.proof.evidence;
+    REQUIRE(exact::CheckComRegion(query, up, good));
+    Vector3q centre = Vector3q::Zero();
+    for (const auto& c : good.corners) centre += c.displacement;
+    centre = exact::Scaled(Rational(1, static_cast<long>(good.corners.size())), centre);
+    for (std::size_t j = 0; j < good.corners.size(); ++j) {
+      exact::ComRegionEvidence bad = good;
+      Vector3q& d = bad.corners[j].displacement;
+      d += exact::Scaled(Rational(1, 1000000), d - centre);  // a millionth of the size outwards
+      CHECK(refused(bad));
+      bad = good;
+      bad.corners[j].base_weight[static_cast<std::size_t>(i % 6)] *= -1;
+      CHECK(refused(bad));
+      bad = good;
+      bad.corners[j].base_weight.pop_back();
+      CHECK(refused(bad));
+      bad = good;
+      bad.corners[j].forces.push_back({0, Vector3q(0, 0, -1)});  // a pull
+      CHECK(refused(bad));
+    }
+    for (std::size_t j = 0; j < good.separators.size(); ++j) {
+      exact::ComRegionEvidence bad = good;
+      bad.separators[j] = -bad.separators[j];
+      CHECK(refused(bad));
+      bad = good;
+      // Another moment makes another line: it cuts and is refused, or is a bound as good as any.
+      for (int k = 3; k < 6; ++k) bad.separators[j][k] *= Rational(1001, 1000);
+      const auto other = exact::CheckComRegion(query, up, bad);
+      cutting += !other;
+      if (!other) continue;
+      CHECK(exact::MarginBounds(*other).hi >= exact::MarginBounds(region.proof.region).lo);
+    }
+    exact::ComRegionEvidence bad = good;
+    bad.basis.inverse(0, 0) += 10;
+    CHECK(refused(bad));
+    bad = good;
+    bad.basis.columns.pop_back();
+    CHECK(refused(bad));
+  }
+  CHECK(altered > 200);
+  CHECK(cutting > 50);
+}
+
+TEST_CASE("Mass and a shift of everything change no proved margin") {
+  StabilityWorkspace workspace;
+  Rng rng(611);
+  for (int i = 0; i < 30; ++i) {
+    Stance stance = RandomStance(1 + i % 3, rng);
+    StabilityQuery query = stance.Query();
+    const exact::Enclosure margin = ProveComMargin(query, {}, &workspace).com_m;
+    query.mass = 1000;
+    const exact::Enclosure heavy = ProveComMargin(query, {}, &workspace).com_m;
+    CHECK(heavy.lo <= margin.hi);
+    CHECK(heavy.hi >= margin.lo);
+    const Eigen::Vector3d shift(3, -2, 1);
+    for (Contact& c : stance.contacts) {
+      c.x_W += shift;
+      c.y_W += shift;
+    }
+    stance.com += shift;
+    const exact::Enclosure shifted = ProveComMargin(stance.Query(), {}, &workspace).com_m;
+    CHECK(shifted.lo <= margin.hi + 1e-12);  // the shift rounds
+    CHECK(shifted.hi >= margin.lo - 1e-12);
+  }
 }
 
 TEST_CASE("An acceleration moves the region of a foot against it") {
