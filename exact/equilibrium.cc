@@ -7,6 +7,7 @@
 #include "cguide/exact/cone_membership.h"
 #include "cguide/exact/core/error.h"
 #include "cguide/exact/linear_algebra.h"
+#include "cguide/exact/pyramids_internal.h"
 
 namespace cguide::exact {
 namespace {
@@ -48,18 +49,16 @@ std::vector<Vector3q> PossibleArms(const EquilibriumQuery& query, int contact) {
   return corners;
 }
 
+}  // namespace
+
+namespace internal {
+
 bool IsExact(const EquilibriumQuery& query) {
   return query.com_error == 0 &&
          std::all_of(query.contacts.begin(), query.contacts.end(), [](const ExactContact& c) {
            return c.error_p == 0 && c.error_w == 0 && c.certain;
          });
 }
-
-/** The force direction of each generator, its contact and its wrench. */
-struct Generators {
-  std::vector<ContactForce> forces;
-  std::vector<VectorXq> wrenches;
-};
 
 Generators InnerGenerators(const EquilibriumQuery& query, int sides) {
   Generators result;
@@ -76,8 +75,6 @@ Generators InnerGenerators(const EquilibriumQuery& query, int sides) {
   return result;
 }
 
-/** Generators of a cone that holds every wrench of every contact; nothing where the error of a
- normal is too large to bound its cone. */
 std::optional<std::vector<VectorXq>> OuterGenerators(const EquilibriumQuery& query, int sides) {
   std::vector<VectorXq> result;
   for (std::size_t i = 0; i < query.contacts.size(); ++i) {
@@ -91,6 +88,29 @@ std::optional<std::vector<VectorXq>> OuterGenerators(const EquilibriumQuery& que
   }
   return result;
 }
+
+std::vector<int> ProposeBasis(const std::vector<VectorXq>& wrenches) {
+  Eigen::MatrixXd columns(6, static_cast<Eigen::Index>(wrenches.size()));
+  for (std::size_t j = 0; j < wrenches.size(); ++j) {
+    for (int k = 0; k < 6; ++k) {
+      columns(k, static_cast<Eigen::Index>(j)) = NearestDouble(wrenches[j][k]);
+    }
+  }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+  std::vector<int> basis;
+  for (int k = 0; k < 6; ++k) basis.push_back(qr.colsPermutation().indices()[k]);
+  return basis;
+}
+
+}  // namespace internal
+
+namespace {
+
+using internal::Generators;
+using internal::InnerGenerators;
+using internal::IsExact;
+using internal::OuterGenerators;
+using internal::ProposeBasis;
 
 /** The forces along the generators in use. They are not summed per contact: it is their number that
  shows the rank. */
@@ -140,20 +160,6 @@ bool Refine(const EquilibriumQuery& query, const VectorXq& v, StabilityResult* r
     return true;
   }
   return false;
-}
-
-/** Six of the wrenches, chosen in doubles for a well-conditioned basis: a proposal only. */
-std::vector<int> ProposeBasis(const std::vector<VectorXq>& wrenches) {
-  Eigen::MatrixXd columns(6, static_cast<Eigen::Index>(wrenches.size()));
-  for (std::size_t j = 0; j < wrenches.size(); ++j) {
-    for (int k = 0; k < 6; ++k) {
-      columns(k, static_cast<Eigen::Index>(j)) = NearestDouble(wrenches[j][k]);
-    }
-  }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
-  std::vector<int> basis;
-  for (int k = 0; k < 6; ++k) basis.push_back(qr.colsPermutation().indices()[k]);
-  return basis;
 }
 
 /** Squared norm of the largest moment part of a row of B^-1, by Gauss-Jordan elimination; nothing
@@ -250,15 +256,21 @@ bool CheckInteriorForces(const EquilibriumQuery& query, const std::vector<Contac
 }
 
 bool CheckSeparatingWrench(const EquilibriumQuery& query, const Vector6q& y) {
-  const Vector3q y_f = y.head(3), y_m = y.tail(3);
+  return ArePolar(query, {y}) && Dot(y, DemandedWrench(query)) > 0;
+}
+
+bool ArePolar(const EquilibriumQuery& query, const std::vector<Vector6q>& wrenches) {
   for (std::size_t i = 0; i < query.contacts.size(); ++i) {
     const auto cone = Widened(query.contacts[i].cone, query.contacts[i].error_w);
-    if (!cone) return false;
+    if (!cone && !wrenches.empty()) return false;
     for (const Vector3q& arm : PossibleArms(query, static_cast<int>(i))) {
-      if (!IsNeverDrivenBy(*cone, y_f + Cross(y_m, arm))) return false;
+      for (const Vector6q& y : wrenches) {
+        const Vector3q y_f = y.head(3), y_m = y.tail(3);
+        if (!IsNeverDrivenBy(*cone, y_f + Cross(y_m, arm))) return false;
+      }
     }
   }
-  return Dot(y, DemandedWrench(query)) > 0;
+  return true;
 }
 
 int WrenchRank(const EquilibriumQuery& query) {

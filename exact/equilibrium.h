@@ -87,6 +87,10 @@ bool CheckInteriorForces(const EquilibriumQuery& query, const std::vector<Contac
  vectors that never drive a cone form a convex cone. */
 bool CheckSeparatingWrench(const EquilibriumQuery& query, const Vector6q& y);
 
+/** The first half of that for many y at once: whether y.a <= 0 for each of them. Such a y bounds
+ every wrench the contacts can supply, whatever is demanded of them. */
+bool ArePolar(const EquilibriumQuery& query, const std::vector<Vector6q>& wrenches);
+
 /** Dimension of the span of the wrenches of all admissible forces. */
 int WrenchRank(const EquilibriumQuery& query);
 

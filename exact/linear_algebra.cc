@@ -57,6 +57,43 @@ bool IsZero(const VectorXq& a) {
   return true;
 }
 
+std::array<Vector3q, 2> PlaneAxes(const Vector3q& up) {
+  Require(!IsZero(up), "a plane needs a normal");
+  int axis = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (abs(up[k]) < abs(up[axis])) axis = k;
+  }
+  Vector3q unit = Vector3q::Zero();
+  unit[axis] = 1;
+  std::array<Vector3q, 2> axes;
+  axes[0] = Cross(unit, up);
+  axes[1] = Cross(up, axes[0]);
+  for (Vector3q& e : axes) e = Scaled(Lift(NearestDouble(1 / SqrtUp(SquaredNorm(e)))), e);
+  return axes;
+}
+
+std::optional<VectorXq> SolveLinearSystem(const std::vector<VectorXq>& columns, const VectorXq& b) {
+  const auto n = static_cast<Eigen::Index>(columns.size());
+  Require(n == b.size(), "a system must be square");
+  MatrixXq m(n, n + 1);
+  for (Eigen::Index j = 0; j < n; ++j) m.col(j) = columns[static_cast<std::size_t>(j)];
+  m.col(n) = b;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::Index pivot = k;
+    while (pivot < n && m(pivot, k) == 0) ++pivot;
+    if (pivot == n) return std::nullopt;
+    if (pivot != k) m.row(k).swap(m.row(pivot));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (i == k || m(i, k) == 0) continue;
+      const Rational factor = m(i, k) / m(k, k);
+      for (Eigen::Index j = k; j <= n; ++j) m(i, j) -= factor * m(k, j);
+    }
+  }
+  VectorXq x(n);
+  for (Eigen::Index k = 0; k < n; ++k) x[k] = m(k, n) / m(k, k);
+  return x;
+}
+
 Matrix3q RotationOf(const Quaternion& q) {
   const Rational x = Lift(q.x), y = Lift(q.y), z = Lift(q.z), w = Lift(q.w);
   const Rational norm = x * x + y * y + z * z + w * w;

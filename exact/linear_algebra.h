@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "cguide/exact/core/error.h"
@@ -22,6 +24,14 @@ Vector3q Scaled(const Rational& s, const Vector3q& a);
 Vector3q Transformed(const Matrix3q& R, const Vector3q& a);
 Matrix3q Product(const Matrix3q& a, const Matrix3q& b);
 bool IsZero(const VectorXq& a);
+
+/** Two vectors normal to `up` and to each other, 1 long up to rounding, that turn counter-clockwise
+ about it. @throws Error where up is zero. */
+std::array<Vector3q, 2> PlaneAxes(const Vector3q& up);
+
+/** x with sum_k x_k columns_k = b, by Gauss-Jordan elimination; nothing where the columns, as many
+ as b has entries, are dependent. */
+std::optional<VectorXq> SolveLinearSystem(const std::vector<VectorXq>& columns, const VectorXq& b);
 
 /** The exactly rigid R = M(q)/|q|^2. @throws Error where q is zero or not finite. */
 Matrix3q RotationOf(const Quaternion& q);

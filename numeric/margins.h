@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "cguide/numeric/stability.h"
@@ -44,6 +45,23 @@ struct SupportRegion {
 
 SupportRegion FindSupportRegion(const StabilityQuery& query, const MarginOptions& options,
                                 StabilityWorkspace* workspace);
+
+/** How com_m changes, per metre, as the centre of mass or the points where contact forces act are
+ moved (normals and friction kept). */
+struct MarginGradient {
+  Eigen::Vector3d com_W = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> contact_W;  ///< one a contact of the query; zero where not certain
+};
+
+/** The gradient of com_m, nothing where it is infinite or the cone has rank < 6. With the line h.d
+ <= b that binds (of the wrench y, h = w x y_m, w = -m g) and forces f_i that balance the robot
+ where the disc touches it, d com_m = (sum_i y_m.(dp_i x f_i) - h.dc)/|h|: the envelope theorem on
+ the linear program. Exact up to the tolerance where line and forces are unique. At a kink, where
+ two lines bind or the forces are not determined by the contacts, it is the derivative on one side,
+ of one of them. Floats without a bound. */
+std::optional<MarginGradient> ComMarginGradient(const StabilityQuery& query,
+                                                const MarginOptions& options,
+                                                StabilityWorkspace* workspace);
 
 /** `force`: the largest r with v + m|g| r {(f, tau/L): |f|^2 + |tau/L|^2 <= 1} in the wrench cone
  of the inscribed pyramids of query.generators sides, moments about the centre of mass, L = 1 m;

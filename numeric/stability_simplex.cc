@@ -163,6 +163,7 @@ bool Simplex::Start() {
   Pivot(row, alpha);
   x_[row] = tau;
   kind_[row] = Kind::kDirection;
+  column_[row].contact = -1;
   direction_row_ = row;
   return true;
 }
@@ -228,6 +229,7 @@ Simplex::Step Simplex::FollowRay(const Generator& entering) {
   x_ -= theta * ray_;
   balance_->extra[5] = entering;
   balance_->extra_weight[5] = theta;
+  if (entering.contact >= 0) held_.push_back({entering, theta});
   return Step::kUnbounded;
 }
 
@@ -288,19 +290,72 @@ Eigen::Vector3d Simplex::displacement() const {
   return sum;
 }
 
+Vector6d Simplex::ShiftRate(const Eigen::Vector3d& d) const { return -ShiftColumn(c_, d).wrench; }
+
 // From now on the direction is a generator like others, with the weight tau >= 0.
-double Simplex::Shoot(const Eigen::Vector3d& d, double limit) {
+double Simplex::Shoot(const Vector6d& rate, double limit) {
   constexpr double kPriceTolerance = 1e-12;
   kind_[direction_row_] = Kind::kContact;
-  if (!Enter(ShiftColumn(c_, d), Kind::kShift)) return limit;
-  const int row = last_row_;
+  Generator column;
+  column.wrench = -rate;
+  reached_ = limit;
+  rate_ = rate;
+  if (!Enter(column, Kind::kShift)) {
+    x_ -= limit * ray_;
+    return limit;
+  }
+  const int row = shot_row_ = last_row_;
   while (x_[row] < limit && pivots_ < 4 * kMaxPivots) {
     y_ = -inverse_.row(row);
     const Price best = DearestContact(y_);
     if (!(best.value > kPriceTolerance)) break;
-    if (!Enter(MakeGenerator(best.contact, y_), Kind::kContact)) return limit;
+    const Generator entering = MakeGenerator(best.contact, y_);
+    if (Enter(entering, Kind::kContact)) continue;
+    if (-ray_[row] > kPivotTolerance) {
+      held_.push_back({entering, (limit - x_[row]) / -ray_[row]});
+      x_ -= held_.back().weight * ray_;
+    }
+    reached_ = x_[row];
+    return limit;
   }
-  return std::min(x_[row], limit);
+  reached_ = x_[row];
+  return std::min(reached_, limit);
+}
+
+// One step of iterative refinement: the inverse is good enough for a correction.
+void Simplex::Polish() {
+  if (shot_row_ < 0) return;
+  Vector6d rest = Vector6d::Zero();
+  rest.head<3>() = c_.v_f;
+  for (const WeightedGenerator& g : held_) rest -= g.weight * g.generator.wrench;
+  for (int k = 0; k < 6; ++k) {
+    if (k == shot_row_) {
+      rest += x_[k] * rate_;
+    } else if (column_[k].contact >= 0) {
+      rest -= x_[k] * column_[k].wrench;
+    } else {
+      for (int j = 0; j < 6; ++j) rest -= x_[k] * kBaseWeight[j] * balance_->base[j].wrench;
+    }
+  }
+  x_ += inverse_ * rest;
+  for (int k = 0; k < 6; ++k) {
+    if (k != shot_row_) x_[k] = std::max(0.0, x_[k]);
+  }
+  reached_ = x_[shot_row_];
+}
+
+std::vector<WeightedGenerator> Simplex::Forces(std::array<double, 6>* base_weight) const {
+  std::vector<WeightedGenerator> forces = held_;
+  base_weight->fill(0);
+  for (int k = 0; k < 6; ++k) {
+    if ((kind_[k] != Kind::kContact && kind_[k] != Kind::kDirection) || !(x_[k] > 0)) continue;
+    if (column_[k].contact >= 0) {
+      forces.push_back({column_[k], x_[k]});
+      continue;
+    }
+    for (int j = 0; j < 6; ++j) (*base_weight)[j] = x_[k] * kBaseWeight[j];
+  }
+  return forces;
 }
 
 bool Simplex::TryInterior() {

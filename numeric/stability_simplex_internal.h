@@ -1,8 +1,16 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "cguide/numeric/stability_contacts_internal.h"
 
 namespace cguide::numeric {
+
+struct WeightedGenerator {
+  Generator generator;
+  double weight = 0;  ///< of the scaled wrench
+};
 
 /** The simplex method on revolution cones; how it works is told in stability_simplex.cc. Untrusted.
  */
@@ -32,11 +40,24 @@ class Simplex {
   /** The displacement in units of contacts.length. */
   Eigen::Vector3d displacement() const;
 
-  /** Moves the centre of mass from a feasible state along d until the wrench leaves the cone, at
-   most by `limit` lengths. Then y() has y.(0, d x v_f) = 1, y.a <= 0 for all contacts and y.v =
-   -the distance.
+  /** Adds multiples of `rate` to the wrench from a feasible state until it leaves the cone, at most
+   `limit` times. Then y() has y.rate = 1, y.a <= 0 for all contacts and y.v = -the distance.
    @return the distance, or `limit`. */
-  double Shoot(const Eigen::Vector3d& d, double limit);
+  double Shoot(const Vector6d& rate, double limit);
+
+  /** The rate of the wrench as the centre of mass moves by multiples of d lengths. */
+  Vector6d ShiftRate(const Eigen::Vector3d& d) const;
+
+  /** Takes the rounding that its pivots have gathered out of the weights after a Shoot. */
+  void Polish();
+
+  /** How far the last Shoot has forces for: the distance it returned, or more or less than `limit`.
+   */
+  double reached() const { return reached_; }
+
+  /** The weighted generators of the present state, and the weight that its direction gives to each
+   generator of the base. */
+  std::vector<WeightedGenerator> Forces(std::array<double, 6>* base_weight) const;
 
   /** A point of the program from which Shoot may start. */
   bool is_feasible() const { return full_rank_ && direction_row_ >= 0 && tau() > 0; }
@@ -92,6 +113,10 @@ class Simplex {
   Shift shift_[2];
   int num_shifts_ = 0;
   int last_row_ = -1;  // of the last pivot of Enter
+  int shot_row_ = -1;  // of the column that Shoot added, if it is basic
+  Vector6d rate_ = Vector6d::Zero();
+  double reached_ = 0;
+  std::vector<WeightedGenerator> held_;  // not in the basis, left at a weight by a ray
   int pivots_ = 0;
 };
 

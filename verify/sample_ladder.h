@@ -47,6 +47,9 @@ class SampleLadder {
   double ForceMargin() const;
   std::vector<Eigen::Vector3d> SupportRegion();  ///< corners in W, counter-clockwise about -gravity
 
+  /** The question of the last TestStability, for margins with proofs. */
+  numeric::StabilityQuery Query() const { return numeric::PlacedQuery(*world_, workspace_); }
+
   const Eigen::Vector3d& com_W() const { return workspace_.geometry.state.com_W; }
 
   const std::vector<numeric::Contact>& contacts() const { return workspace_.contacts; }

@@ -65,8 +65,10 @@ section_main_job() {
   expect 0 stability --guide "$work/guide.json" --at 0.5
   says "statically stable"
   says "support region"
+  says "mm, checked exactly"
   expect 0 stability "$a1" --posture goal --format json
   says '"verdict": "stable"'
+  says '"com_margin_enclosure_m"'
   expect 1 stability "$room" --posture sitting
   says "separating wrench"
   expect 0 view "$work/guide.json" -o "$work/page.html"

@@ -1,12 +1,16 @@
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/numeric/force_distribution.h"
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/numeric/margins.h"
 #include "cguide/numeric/membership.h"
+#include "cguide/numeric/proved_margins.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
 #include "cguide/verify/cli/subject.h"
@@ -68,11 +72,37 @@ struct Answer {
   std::string reason;  ///< where undecided
   verify::StageCounts stage;
   std::vector<numeric::Contact> contacts;
-  double com_margin = 0;
-  double force_margin = 0;
-  std::vector<Eigen::Vector3d> region;
   Eigen::Vector3d com_W = Eigen::Vector3d::Zero();
+
+  exact::Enclosure com_margin;
+  exact::Enclosure force_margin;
+  bool force_checked = false;  ///< else a float
+  int sides = 4;               ///< of the pyramids of the force margin
+  numeric::ProvedSupportRegion region;
+  std::optional<numeric::ForceDistribution> distribution;
 };
+
+constexpr numeric::MarginOptions kRegionOptions{1e-4, 40};  // a tenth of a millimetre is for people
+
+/** Margins, region and forces, with proofs where there can be any: a contact without a normal
+ allows none. */
+void AskMargins(const numeric::StabilityQuery& query, Answer* answer) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  numeric::StabilityWorkspace workspace;
+  answer->sides = query.generators;
+  answer->com_margin = {-kInfinity, kInfinity};
+  answer->region.gap = kInfinity;
+  const auto force_margin = numeric::ProveForceMargin(query);
+  answer->force_checked = force_margin.has_value();
+  const double force = force_margin ? 0 : numeric::ForceMargin(query);
+  answer->force_margin = force_margin.value_or(exact::Enclosure{force, force});
+  for (const numeric::Contact& contact : query.contacts) {
+    if (contact.n_W.isZero(0)) return;
+  }
+  answer->com_margin = numeric::ProveComMargin(query, {}, &workspace).com_m;
+  answer->region = numeric::ProveSupportRegion(query, {kRegionOptions, {}}, &workspace);
+  answer->distribution = numeric::DistributeForces(query, &workspace);
+}
 
 Answer Ask(const Question& question) {
   const numeric::World world(question.problem.model);
@@ -84,10 +114,8 @@ Answer Ask(const Question& question) {
   answer.stability = settled.answer;
   answer.reason = settled.reason;
   answer.contacts = ladder.contacts();
-  answer.com_margin = ladder.ComMargin();
-  answer.force_margin = ladder.ForceMargin();
-  answer.region = ladder.SupportRegion();
   answer.com_W = ladder.com_W();
+  AskMargins(ladder.Query(), &answer);
   return answer;
 }
 
@@ -110,17 +138,76 @@ std::string Vector(const Eigen::Vector3d& v) {
   return "[" + Short(v.x()) + " " + Short(v.y()) + " " + Short(v.z()) + "]";
 }
 
+/** The value in the unit with so many digits, rounded up or down. */
+std::string Rounded(double value, double unit, int digits, bool up) {
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  if (value == 0) return "0";
+  const double scaled = value / unit;
+  const double step = std::pow(10.0, std::floor(std::log10(std::abs(scaled))) + 1 - digits);
+  // Quotient and power may be off by an ulp or so: a hundredth of a step more.
+  const double steps = up ? std::ceil(scaled / step + 0.01) : std::floor(scaled / step - 0.01);
+  std::ostringstream out;
+  out.precision(digits);
+  out << steps * step;
+  return out.str();
+}
+
+std::string Enclosed(const exact::Enclosure& x, double unit) {
+  return "[" + Rounded(x.lo, unit, 8, false) + ", " + Rounded(x.hi, unit, 8, true) + "]";
+}
+
 std::string ContactName(const Model& model, const numeric::Contact& contact) {
   return "\"" + model.robot.bodies[contact.body].name + "\" on \"" +
          model.objects[contact.object].name + "\"";
 }
 
+std::string ForceMarginText(const Answer& answer) {
+  if (!answer.force_checked) return Short(answer.force_margin.lo) + " (a float, not checked)";
+  return Enclosed(answer.force_margin, 1) + ", checked exactly for pyramids of " +
+         std::to_string(answer.sides) + " sides";
+}
+
+void PrintForces(const Answer& answer) {
+  if (answer.distribution) {
+    std::cout << "forces that balance it, checked exactly (N)\n";
+    for (std::size_t i = 0; i < answer.contacts.size(); ++i) {
+      // Shown to a tenth of a millinewton.
+      const Eigen::Vector3d f =
+          (answer.distribution->force_W[i] * 1e4).array().round() * 1e-4 + 0.0;  // no -0
+      if (f.isZero(0)) continue;
+      std::cout << "  " << Vector(f) << " at " << Vector(answer.contacts[i].force_point_W())
+                << '\n';
+    }
+    return;
+  }
+  std::cout << "forces that balance it (N)\n";
+  for (const numeric::WitnessForce& f : answer.stability.forces) {
+    const auto at = static_cast<std::size_t>(f.contact);
+    std::cout << "  " << Vector(f.weight * f.u_W) << " at "
+              << Vector(answer.contacts[at].force_point_W()) << '\n';
+  }
+}
+
+void PrintRegion(const numeric::ProvedSupportRegion& region) {
+  const char* what = "support region of the centre of mass";
+  if (region.is_empty) std::cout << what << ": empty, checked exactly\n";
+  if (region.whole_plane) std::cout << what << ": the whole plane, checked exactly\n";
+  if (region.inner_W.empty()) return;
+  std::cout << what << ", complete "
+            << (std::isinf(region.gap) ? "on no side"
+                                       : "within " + Rounded(region.gap, 1e-3, 2, true) + " mm")
+            << ", checked exactly (m)\n";
+  for (const Eigen::Vector3d& p : region.inner_W) {
+    std::cout << "  " << Short(p.x()) << ' ' << Short(p.y()) << '\n';
+  }
+}
+
 void PrintText(const Question& question, const Answer& answer) {
   const Model& model = question.problem.model;
   std::cout << question.what << ": " << VerdictText(answer) << '\n'
-            << "  centre of mass " << Vector(answer.com_W) << " m, com margin "
-            << Millimetres(answer.com_margin) << ", force margin " << Short(answer.force_margin)
-            << '\n'
+            << "  centre of mass " << Vector(answer.com_W) << " m\n"
+            << "  com margin   " << Enclosed(answer.com_margin, 1e-3) << " mm, checked exactly\n"
+            << "  force margin " << ForceMarginText(answer) << '\n'
             << answer.contacts.size() << " contact points\n";
   for (const numeric::Contact& contact : answer.contacts) {
     std::cout << "  " << ContactName(model, contact) << " at " << Vector(contact.force_point_W())
@@ -129,29 +216,38 @@ void PrintText(const Question& question, const Answer& answer) {
               << Short(contact.friction) << (contact.certain ? "" : ", perhaps not active") << '\n';
   }
   if (answer.stability.verdict == Verdict::kHolds) {
-    std::cout << "forces that balance it (N)\n";
-    for (const numeric::WitnessForce& f : answer.stability.forces) {
-      const auto at = static_cast<std::size_t>(f.contact);
-      std::cout << "  " << Vector(f.weight * f.u_W) << " at "
-                << Vector(answer.contacts[at].force_point_W()) << '\n';
-    }
+    PrintForces(answer);
   } else if (answer.stability.verdict == Verdict::kFails) {
     std::cout << "separating wrench about the centre of mass\n  [";
     for (int i = 0; i < 6; ++i)
       std::cout << (i ? " " : "") << Short(answer.stability.separator.y[i]);
     std::cout << "]\n";
   }
-  if (!answer.region.empty()) {
-    std::cout << "support region of the centre of mass (m)\n";
-    for (const Eigen::Vector3d& p : answer.region) {
-      std::cout << "  " << Short(p.x()) << ' ' << Short(p.y()) << '\n';
-    }
-  }
+  PrintRegion(answer.region);
 }
 
 Json ToJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
 Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+/** The ends; infinite ones as null. */
+Json ToJson(const exact::Enclosure& x) { return Json::array({Number(x.lo), Number(x.hi)}); }
+
+Json ForcesJson(const Answer& answer) {
+  Json forces = Json::array();
+  const auto add = [&forces](int contact, const Eigen::Vector3d& f) {
+    forces.push_back({{"contact", contact}, {"force_n", ToJson(f)}});
+  };
+  if (answer.distribution) {
+    for (std::size_t i = 0; i < answer.contacts.size(); ++i) {
+      const Eigen::Vector3d& f = answer.distribution->force_W[i];
+      if (!f.isZero(0)) add(static_cast<int>(i), f);
+    }
+  } else if (answer.stability.verdict == Verdict::kHolds) {
+    for (const numeric::WitnessForce& f : answer.stability.forces) add(f.contact, f.weight * f.u_W);
+  }
+  return forces;
+}
 
 void PrintJson(const Question& question, const Answer& answer) {
   const Model& model = question.problem.model;
@@ -163,8 +259,11 @@ void PrintJson(const Question& question, const Answer& answer) {
                                                                   : "undecided";
   json["stage"] = answer.stage.exact > 0 ? "exact" : answer.stage.fast > 0 ? "fast" : "none";
   json["com_m"] = ToJson(answer.com_W);
-  json["com_margin_m"] = Number(answer.com_margin);
-  json["force_margin"] = Number(answer.force_margin);
+  json["com_margin_m"] = Number(answer.com_margin.lo);
+  json["com_margin_enclosure_m"] = ToJson(answer.com_margin);
+  json["force_margin"] = Number(answer.force_margin.lo);
+  json["force_margin_enclosure"] = nullptr;
+  if (answer.force_checked) json["force_margin_enclosure"] = ToJson(answer.force_margin);
   json["contacts"] = Json::array();
   for (const numeric::Contact& c : answer.contacts) {
     Json contact;
@@ -177,22 +276,16 @@ void PrintJson(const Question& question, const Answer& answer) {
     contact["certain"] = c.certain;
     json["contacts"].push_back(contact);
   }
-  json["forces"] = Json::array();
-  if (answer.stability.verdict == Verdict::kHolds) {
-    for (const numeric::WitnessForce& f : answer.stability.forces) {
-      Json force;
-      force["contact"] = f.contact;
-      force["force_n"] = ToJson(f.weight * f.u_W);
-      json["forces"].push_back(force);
-    }
-  }
+  json["forces"] = ForcesJson(answer);
   json["separating_wrench"] = nullptr;
   if (answer.stability.verdict == Verdict::kFails) {
     json["separating_wrench"] = Json::array();
     for (double y : answer.stability.separator.y) json["separating_wrench"].push_back(y);
   }
   json["support_region_m"] = Json::array();
-  for (const Eigen::Vector3d& p : answer.region) json["support_region_m"].push_back(ToJson(p));
+  json["support_region_gap_m"] = Number(answer.region.gap);
+  for (const Eigen::Vector3d& p : answer.region.inner_W)
+    json["support_region_m"].push_back(ToJson(p));
   std::cout << json.dump(1) << '\n';
 }
 

@@ -1,0 +1,3 @@
+#include "tests/benchmark/features_section.h"
+
+int main() { cguide::benchmark_tools::ReportFeatures(stdout); }
