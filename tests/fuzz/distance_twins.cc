@@ -1,5 +1,6 @@
 #include "cguide/exact/convex_distance.h"
 #include "cguide/exact/core/error.h"
+#include "cguide/exact/linear_algebra.h"
 #include "cguide/exact/triangle_distance.h"
 #include "cguide/numeric/clearance_internal.h"
 #include "cguide/numeric/convex_distance.h"
