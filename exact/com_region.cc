@@ -219,6 +219,7 @@ std::optional<ComRegion> CheckComRegion(const EquilibriumQuery& query, const Vec
   Require(!IsZero(up), "a plane needs a normal");
   for (const ExactContact& contact : query.contacts) {
     Require(!IsZero(contact.cone.w), "a contact normal must not vanish");
+    Require(contact.cone.mu >= 0, "a friction coefficient must not be negative");
     Require(contact.error_p >= 0 && query.com_error >= 0, "an error bound must not be negative");
   }
   const BalanceChecker checker(query, evidence.basis);

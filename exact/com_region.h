@@ -69,7 +69,8 @@ struct Enclosure {
  cone R^6. Only certain contacts support.
  @param up the normal of the plane of displacements; not zero. With an acceleration a, put g - a for
  the query's gravity and -g here.
- @throws Error unless mass > 0, gravity != 0, up != 0, no normal vanishes and errors are >= 0. */
+ @throws Error unless mass > 0, gravity != 0, up != 0, no normal vanishes, and mu and
+ errors are >= 0. */
 std::optional<ComRegion> CheckComRegion(const EquilibriumQuery& query, const Vector3q& up,
                                         const ComRegionEvidence& evidence);
 

@@ -18,8 +18,8 @@ struct MarginOptions {
  least such displacement that makes it so. In metres.
 
  lo comes from an inscribed polygon, hi from supporting lines; both are floats without a bound on
- rounding (about 1e-12 m on ordinary stances). -infinity where no displacement makes the wrench
- interior, +infinity where every one up to 100 m does. */
+ rounding (about 1e-12 m on ordinary stances): ProveComMargin has one. -infinity where no
+ displacement makes the wrench interior, +infinity where every one up to 100 m does. */
 struct ComMargin {
   double lo = 0;
   double hi = 0;

@@ -104,62 +104,66 @@ exact::WrenchBasis RegionProver::basis() const {
   return basis;
 }
 
-// The share is what makes the least base weight eight times the correction that the residual and
-// the errors may ask for; the residual itself is put into the base weights.
+// `share` of the inner balance, the rest of the other; the residual goes into the base weights.
+// `moved` bounds what rounding and the contacts' errors may still ask of them.
+RegionProver::Mixture RegionProver::Mix(const FloatBalance& balance, double share) const {
+  const double v_scale = workspace_->scratch->contacts.v_scale;
+  Mixture mixture;
+  mixture.q = balance.q + share * (inner_.q - balance.q);
+  Vector6d rest = Demand(InPlane(mixture.q)), magnitude = rest.cwiseAbs();
+  double moment_error = 0;
+  const auto subtract = [&](const Column& column) {
+    const Vector6d wrench = WrenchOf(column);
+    rest -= column.weight * wrench;
+    magnitude += column.weight * wrench.cwiseAbs();
+    const Contact& c = query_.contacts[lifted_.contact[column.contact]];
+    moment_error += column.weight * column.u.lpNorm<1>() *
+                    (c.error + query_.com_error + c.radius * NormalError(c));
+  };
+  for (const auto& [part, factor] : {std::pair(&balance, 1 - share), std::pair(&inner_, share)}) {
+    for (const WeightedGenerator& g : part->forces) {
+      mixture.columns.push_back(ToColumn(g.generator, factor * g.weight));
+      subtract(mixture.columns.back());
+    }
+  }
+  for (int k = 0; k < 6; ++k) {
+    Column column = base_[k];
+    column.weight = mixture.weight[k] =
+        v_scale * ((1 - share) * balance.base_weight[k] + share * inner_.base_weight[k]);
+    subtract(column);
+  }
+  const Vector6d correction = inverse_ * rest;
+  mixture.weight += correction;
+  mixture.correction = correction.lpNorm<Eigen::Infinity>();
+  Vector6d error = 32 * kUnit * magnitude;
+  error.tail<3>().array() += moment_error;
+  mixture.moved = (inverse_.cwiseAbs() * error).maxCoeff();
+  return mixture;
+}
+
+// The share is what leaves the least base weight several times what may still be asked of it.
 std::optional<exact::DisplacedBalance> RegionProver::Corner(const FloatBalance& balance,
                                                             double reach) const {
-  const double v_scale = workspace_->scratch->contacts.v_scale;
   const double inner_least =
-      v_scale * *std::min_element(inner_.base_weight.begin(), inner_.base_weight.end());
-  const Eigen::Vector2d drawn = inner_.q - balance.q;
+      workspace_->scratch->contacts.v_scale *
+      *std::min_element(inner_.base_weight.begin(), inner_.base_weight.end());
   // A shot without end may have forces for a point much farther than its neighbours'.
-  const double length = drawn.norm();
+  const double length = (inner_.q - balance.q).norm();
   const double back = length > kReach ? 1 - kReach / length : 0;
   double extra = reach * kLeastShare;
-  for (int attempt = 0; attempt < 8; ++attempt) {
-    const double share = back + (1 - back) * extra;
-    const Eigen::Vector2d q = balance.q + share * drawn;
-    const Vector6d v = Demand(InPlane(q));
-    Vector6d rest = v, magnitude = v.cwiseAbs();
-    Vector6d weight;
-    double moment_error = 0;
-    std::vector<Column> columns;
-    const auto add = [&](const Column& column) {
-      const Vector6d wrench = WrenchOf(column);
-      rest -= column.weight * wrench;
-      magnitude += column.weight * wrench.cwiseAbs();
-      const Contact& c = query_.contacts[lifted_.contact[column.contact]];
-      moment_error += column.weight * column.u.lpNorm<1>() *
-                      (c.error + query_.com_error + c.radius * NormalError(c));
-    };
-    for (const auto& [part, factor] : {std::pair(&balance, 1 - share), std::pair(&inner_, share)}) {
-      for (const WeightedGenerator& g : part->forces) {
-        columns.push_back(ToColumn(g.generator, factor * g.weight));
-        add(columns.back());
-      }
-    }
-    for (int k = 0; k < 6; ++k) {
-      weight[k] = v_scale * ((1 - share) * balance.base_weight[k] + share * inner_.base_weight[k]);
-      Column column = base_[k];
-      column.weight = weight[k];
-      add(column);
-    }
-    const Vector6d correction = inverse_ * rest;
-    weight += correction;
-    Vector6d error = 32 * kUnit * magnitude;
-    error.tail<3>().array() += moment_error;
-    const double moved = (inverse_.cwiseAbs() * error).maxCoeff();
-    const double needed =
-        (8 * reach * moved + 2 * correction.lpNorm<Eigen::Infinity>()) / inner_least;
-    if (weight.minCoeff() >= 4 * reach * moved && weight.minCoeff() > 0) {
+  for (int attempt = 0; attempt < 8 && extra <= kLargestShare; ++attempt) {
+    const Mixture mixture = Mix(balance, back + (1 - back) * extra);
+    const double least = mixture.weight.minCoeff();
+    if (least > 0 && least >= 4 * reach * mixture.moved) {
       exact::DisplacedBalance result;
-      result.displacement = ExactInPlane(q);
-      for (const double x : weight) result.base_weight.push_back(Lift(x));
-      for (const Column& column : columns) result.forces.push_back(Lifted(column, column.weight));
+      result.displacement = ExactInPlane(mixture.q);
+      for (const double x : mixture.weight) result.base_weight.push_back(Lift(x));
+      for (const Column& column : mixture.columns) {
+        result.forces.push_back(Lifted(column, column.weight));
+      }
       return result;
     }
-    extra = std::max(2 * extra, needed);
-    if (!(extra <= kLargestShare)) break;
+    extra = std::max(2 * extra, (8 * reach * mixture.moved + 2 * mixture.correction) / inner_least);
   }
   return std::nullopt;
 }

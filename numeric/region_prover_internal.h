@@ -40,6 +40,15 @@ class RegionProver {
     double weight = 0;  // N per unit of u
   };
 
+  struct Mixture {
+    Eigen::Vector2d q;
+    std::vector<Column> columns;
+    Vector6d weight;        // of the base
+    double correction = 0;  // largest, of the weights for the residual
+    double moved = 0;
+  };
+
+  Mixture Mix(const FloatBalance& balance, double share) const;
   Column ToColumn(const Generator& generator, double weight) const;
   Vector6d WrenchOf(const Column& column) const;
   Vector6d Demand(const Eigen::Vector3d& displacement) const;

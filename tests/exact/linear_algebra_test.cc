@@ -69,4 +69,45 @@ TEST_CASE("The rotation of any quaternion is exactly rigid, and turns as it shou
   CHECK_THROWS_AS(RotationOf({0, 0, 0, 0}), Error);
 }
 
+TEST_CASE("The axes of a plane are normal to its normal and to each other, counter-clockwise") {
+  std::mt19937 rng(61);
+  for (int round = 0; round < 100; ++round) {
+    const Vector3q up = RandomVector(rng, 3, 7);
+    if (IsZero(up)) {
+      CHECK_THROWS_AS(PlaneAxes(up), Error);
+      continue;
+    }
+    const auto axes = PlaneAxes(up);
+    CHECK(Dot(axes[0], up) == 0);
+    CHECK(Dot(axes[1], up) == 0);
+    CHECK(Dot(axes[0], axes[1]) == 0);
+    CHECK(Dot(up, Cross(axes[0], axes[1])) > 0);
+    CHECK(abs(Rational(SquaredNorm(axes[0]) - 1)) < Rational(1, 1 << 30));
+    CHECK(abs(Rational(SquaredNorm(axes[1]) - 1)) < Rational(1, 1 << 30));
+  }
+}
+
+TEST_CASE("A linear system is solved exactly, a singular one not at all") {
+  std::mt19937 rng(62);
+  int singular = 0;
+  for (int round = 0; round < 200; ++round) {
+    const int n = 1 + static_cast<int>(rng() % 6);
+    std::vector<VectorXq> columns;
+    for (int k = 0; k < n; ++k) columns.push_back(RandomVectorX(rng, n, 1));
+    const VectorXq b = RandomVectorX(rng, n, 5);
+    const auto x = SolveLinearSystem(columns, b);
+    CHECK(x.has_value() == (Rank(columns) == n));
+    if (!x) {
+      ++singular;
+      continue;
+    }
+    VectorXq sum = VectorXq::Zero(n);
+    for (int k = 0; k < n; ++k) {
+      for (int i = 0; i < n; ++i) sum[i] += (*x)[k] * columns[static_cast<std::size_t>(k)][i];
+    }
+    CHECK(sum == b);
+  }
+  CHECK(singular > 10);
+}
+
 }  // namespace cguide::exact
