@@ -29,7 +29,7 @@ struct Cell {
   std::vector<double> flt, certified, normals, cdd, qhull, ppl;
   std::vector<double> certified_ratio, cdd_ratio, qhull_ratio, ppl_ratio;
   std::vector<double> facets;
-  int float_differs = 0, cdd_differs = 0, wrong = 0, checked = 0;
+  int float_differs = 0, cdd_differs = 0, cdd_failed = 0, wrong = 0, checked = 0;
 };
 
 template <typename Work>
@@ -86,8 +86,12 @@ void MeasureSet(const WrenchSet& set, bool with_ppl, Cell* cell) {
   const double base = cell->flt.back();
   cell->certified_ratio.push_back(cell->certified.back() / base);
   peers::FacetList cdd;
-  cell->cdd.push_back(MicrosecondsOf(1, [&] { cdd = peers::CddFacets(wrenches); }));
-  cell->cdd_ratio.push_back(cell->cdd.back() / base);
+  const double cdd_time = MicrosecondsOf(1, [&] { cdd = peers::CddFacets(wrenches); });
+  if (!cdd.failed) {  // "numerically inconsistent" comes early and is no time for a list
+    cell->cdd.push_back(cdd_time);
+    cell->cdd_ratio.push_back(cdd_time / base);
+  }
+  cell->cdd_failed += cdd.failed;
   cell->cdd_differs += cdd.failed || cdd.facets.size() != dual.facets.size();
   Vector6d w = Vector6d::Zero();
   for (const auto& facet : dual.facets) w -= facet.normal;
@@ -123,7 +127,7 @@ void ReportDual(std::FILE* out) {
                "float/cdd differ: stances whose list has another length than the exact one.\n"
                "%-7s %5s %7s %6s | %7s %7s %7s | %9s %7s %10s | %s\n",
                kSets, "storage", "sides", "patches", "facets", "float", "certif.", "+normals",
-               "cdd", "qhull", "ppl", "float differs, cdd differs, wrong/checked");
+               "cdd", "qhull", "ppl", "float differs, cdd differs (failed), wrong/checked");
   for (const Storage storage : {Storage::kSnapped, Storage::kRounded}) {
     const char* const name = storage == Storage::kSnapped ? "snapped" : "rounded";
     std::vector<double> certified, cdd, qhull, ppl;
@@ -135,13 +139,13 @@ void ReportDual(std::FILE* out) {
           MeasureSet(RandomStanceSet(patches, sides, storage, rng), i < kPplSets, &cell);
         }
         std::fprintf(
-            out, "%-7s %5d %7d %6.0f | %7.0f %7.0f %7.0f | %9.0f %7.0f %10.0f | %d %d %d/%d\n",
+            out, "%-7s %5d %7d %6.0f | %7.0f %7.0f %7.0f | %9.0f %7.0f %10.0f | %d %d(%d) %d/%d\n",
             name, sides, patches, Median(cell.facets), Median(cell.flt), Median(cell.certified),
             Median(cell.normals), Median(cell.cdd), Median(cell.qhull), Median(cell.ppl),
-            cell.float_differs, cell.cdd_differs, cell.wrong, cell.checked);
+            cell.float_differs, cell.cdd_differs, cell.cdd_failed, cell.wrong, cell.checked);
         std::fflush(out);
         certified.push_back(Median(cell.certified_ratio));
-        cdd.push_back(Median(cell.cdd_ratio));
+        if (!cell.cdd_ratio.empty()) cdd.push_back(Median(cell.cdd_ratio));
         if (!cell.qhull_ratio.empty()) qhull.push_back(Median(cell.qhull_ratio));
         ppl.push_back(Median(cell.ppl_ratio));
       }
