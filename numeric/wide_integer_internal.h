@@ -13,7 +13,8 @@ __extension__ typedef unsigned __int128 UInt128;
  products wrap: the caller bounds them. */
 template <int N>
 struct Wide {
-  std::uint64_t w[N];
+  static_assert(sizeof(mp_limb_t) == sizeof(std::uint64_t) && GMP_NAIL_BITS == 0);
+  mp_limb_t w[N];
 
   bool IsNegative() const { return static_cast<std::int64_t>(w[N - 1]) < 0; }
   bool IsZero() const {
@@ -23,27 +24,36 @@ struct Wide {
   }
   int Sign() const { return IsNegative() ? -1 : IsZero() ? 0 : 1; }
 
+  // GMP's loops from four words on, the compiler's double word up to two.
   Wide& operator+=(const Wide& b) {
-    std::uint64_t carry = 0;
-    for (int i = 0; i < N; ++i) {
-      const UInt128 sum = UInt128{w[i]} + b.w[i] + carry;
-      w[i] = static_cast<std::uint64_t>(sum);
-      carry = static_cast<std::uint64_t>(sum >> 64);
+    if constexpr (N == 1) {
+      w[0] += b.w[0];
+    } else if constexpr (N == 2) {
+      Store(0, Load(0) + b.Load(0));
+    } else {
+      mpn_add_n(w, w, b.w, N);
     }
     return *this;
   }
   Wide& operator-=(const Wide& b) {
-    std::uint64_t borrow = 0;
-    for (int i = 0; i < N; ++i) {
-      const UInt128 difference = UInt128{w[i]} - b.w[i] - borrow;
-      w[i] = static_cast<std::uint64_t>(difference);
-      borrow = static_cast<std::uint64_t>(difference >> 64) & 1;
+    if constexpr (N == 1) {
+      w[0] -= b.w[0];
+    } else if constexpr (N == 2) {
+      Store(0, Load(0) - b.Load(0));
+    } else {
+      mpn_sub_n(w, w, b.w, N);
     }
     return *this;
   }
   Wide operator-() const {
     Wide result{};
     return result -= *this;
+  }
+
+  UInt128 Load(int i) const { return UInt128{w[i + 1]} << 64 | w[i]; }
+  void Store(int i, UInt128 x) {
+    w[i] = static_cast<std::uint64_t>(x);
+    w[i + 1] = static_cast<std::uint64_t>(x >> 64);
   }
 };
 
@@ -65,39 +75,33 @@ Wide<N> Shifted(Int128 m, int shift) {
   return result;
 }
 
+// The words of a negative number stand for it plus 2^(64 N): the product of the words exceeds the
+// number's by b 2^(64 A) where a is negative, by a 2^(64 B) where b is.
 template <int A, int B>
 inline Wide<A + B> operator*(const Wide<A>& a, const Wide<B>& b) {
   Wide<A + B> result;
   if constexpr (A == 1 && B == 1) {
-    const Int128 p = Int128{static_cast<std::int64_t>(a.w[0])} * static_cast<std::int64_t>(b.w[0]);
+    result.Store(0, static_cast<UInt128>(Int128{static_cast<std::int64_t>(a.w[0])} *
+                                         static_cast<std::int64_t>(b.w[0])));
+  } else if constexpr (A == 2 && B == 2) {
+    const UInt128 p = UInt128{a.w[0]} * b.w[0], q = UInt128{a.w[0]} * b.w[1],
+                  r = UInt128{a.w[1]} * b.w[0], s = UInt128{a.w[1]} * b.w[1];
+    const UInt128 middle =
+        (p >> 64) + static_cast<std::uint64_t>(q) + static_cast<std::uint64_t>(r);
     result.w[0] = static_cast<std::uint64_t>(p);
-    result.w[1] = static_cast<std::uint64_t>(p >> 64);
+    result.w[1] = static_cast<std::uint64_t>(middle);
+    const UInt128 a_negative = -UInt128{a.w[1] >> 63}, b_negative = -UInt128{b.w[1] >> 63};
+    result.Store(2, s + (q >> 64) + (r >> 64) + (middle >> 64) - (b.Load(0) & a_negative) -
+                        (a.Load(0) & b_negative));
   } else {
-    for (int i = 0; i < A + B; ++i) result.w[i] = 0;
-    for (int j = 0; j < B; ++j) {
-      std::uint64_t carry = 0;
-      for (int i = 0; i < A; ++i) {
-        const UInt128 t = UInt128{a.w[i]} * b.w[j] + result.w[i + j] + carry;
-        result.w[i + j] = static_cast<std::uint64_t>(t);
-        carry = static_cast<std::uint64_t>(t >> 64);
-      }
-      result.w[A + j] = carry;
+    static_assert(A >= B);
+    if constexpr (B == 1) {
+      result.w[A] = mpn_mul_1(result.w, a.w, A, b.w[0]);
+    } else {
+      mpn_mul(result.w, a.w, A, b.w, B);
     }
-    // The words of a negative number stand for it plus 2^(64 N).
-    const std::uint64_t a_negative = a.IsNegative() ? ~std::uint64_t{0} : 0,
-                        b_negative = b.IsNegative() ? ~std::uint64_t{0} : 0;
-    std::uint64_t borrow = 0;
-    for (int i = 0; i < B; ++i) {
-      const UInt128 t = UInt128{result.w[A + i]} - (b.w[i] & a_negative) - borrow;
-      result.w[A + i] = static_cast<std::uint64_t>(t);
-      borrow = static_cast<std::uint64_t>(t >> 64) & 1;
-    }
-    borrow = 0;
-    for (int i = 0; i < A; ++i) {
-      const UInt128 t = UInt128{result.w[B + i]} - (a.w[i] & b_negative) - borrow;
-      result.w[B + i] = static_cast<std::uint64_t>(t);
-      borrow = static_cast<std::uint64_t>(t >> 64) & 1;
-    }
+    if (a.IsNegative()) mpn_sub_n(result.w + A, result.w + A, b.w, B);
+    if (b.IsNegative()) mpn_sub_n(result.w + B, result.w + B, a.w, A);
   }
   return result;
 }

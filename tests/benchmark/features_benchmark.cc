@@ -1,3 +1,0 @@
-#include "tests/benchmark/features_section.h"
-
-int main() { cguide::benchmark_tools::ReportFeatures(stdout); }

@@ -1,3 +1,0 @@
-#include "tests/benchmark/membership_section.h"
-
-int main() { cguide::benchmark_tools::ReportMembership(stdout); }
