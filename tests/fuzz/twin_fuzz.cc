@@ -1,7 +1,8 @@
 // Random cases for the pairs of twins, in an ordinary build, as fast as they go:
-//   twin_fuzz [FAMILY ...] [--seed N] [--count M] [--length BYTES]
+//   twin_fuzz [FAMILY ...] [--seed N] [--count M | --seconds S] [--length BYTES]
 // Case i of a family is made from the bytes of a generator seeded with (seed, i), so that one case
 // can be repeated alone. Exit 1 at the first wrong answer, with the command that repeats it.
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -16,6 +17,7 @@ using namespace cguide::fuzz;  // NOLINT: a program of one file
 struct Arguments {
   std::vector<std::string> families;
   std::uint64_t seed = 1, count = 100000;
+  double seconds = 0;  ///< > 0: until then instead of `count`
   std::size_t length = 160;
   long independent = 10000;  ///< cases also given to the independent solver
 };
@@ -25,7 +27,13 @@ bool Run(const Family& family, const Arguments& arguments) {
   std::vector<std::uint8_t> bytes(arguments.length);
   const std::uint64_t every = std::max<std::uint64_t>(
       1, arguments.count / static_cast<std::uint64_t>(arguments.independent));
-  for (std::uint64_t i = 0; i < arguments.count; ++i) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto more = [&](std::uint64_t i) {
+    if (arguments.seconds <= 0) return i < arguments.count;
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    return spent.count() < arguments.seconds;
+  };
+  for (std::uint64_t i = 0; more(i); ++i) {
     std::mt19937_64 rng(arguments.seed + i);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(rng());
     ByteStream in(bytes.data(), bytes.size());
@@ -53,6 +61,8 @@ int main(int argc, char** argv) {
       arguments.seed = number();
     } else if (std::strcmp(argv[i], "--count") == 0) {
       arguments.count = number();
+    } else if (std::strcmp(argv[i], "--seconds") == 0) {
+      arguments.seconds = static_cast<double>(number());
     } else if (std::strcmp(argv[i], "--length") == 0) {
       arguments.length = static_cast<std::size_t>(number());
     } else {
