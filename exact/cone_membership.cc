@@ -6,6 +6,7 @@
 #include "cguide/exact/cgal_solvers_internal.h"
 #include "cguide/exact/core/error.h"
 #include "cguide/exact/linear_algebra.h"
+#include "cguide/exact/linear_program.h"
 
 namespace cguide::exact {
 namespace {
@@ -65,7 +66,51 @@ std::optional<VectorXq> Normal(const std::vector<VectorXq>& generators, Eigen::I
   return std::nullopt;
 }
 
-ConeMembership Decide(const std::vector<VectorXq>& generators, const VectorXq& v) {
+/** The program of DecideConeMembership over integer columns: internal::SolveMembership or
+ * SolveByLp. */
+using Solver = internal::MembershipSolution (*)(const std::vector<IntegerVector>&,
+                                                const IntegerVector&);
+
+VectorXq WithRow(const IntegerVector& a, const Rational& last) {
+  VectorXq column(static_cast<Eigen::Index>(a.size()) + 1);
+  for (std::size_t i = 0; i < a.size(); ++i) column[static_cast<Eigen::Index>(i)] = a[i];
+  column[column.size() - 1] = last;
+  return column;
+}
+
+/** max t over sum_i (weight_i + t) column_i = v, t + slack = 1, all variables >= 0. With
+ multipliers (y, z): where infeasible y.column <= 0, z <= 0 < y.v + z, so y separates; at an optimum
+ with t = 0, y.column >= 0 and z >= 0 = y.v + z while y.v >= 0 for the feasible v, so z = 0 = y.v,
+ and the column of t keeps y.(sum of columns) >= 1: -y supports the cone at v. */
+internal::MembershipSolution SolveByLp(const std::vector<IntegerVector>& columns,
+                                       const IntegerVector& v) {
+  LinearProgram program;
+  IntegerVector sum(v.size(), mpz_class(0));
+  for (const IntegerVector& a : columns) {
+    for (std::size_t i = 0; i < a.size(); ++i) sum[i] += a[i];
+    program.columns.push_back(WithRow(a, 0));
+  }
+  program.columns.push_back(WithRow(sum, 1));
+  program.columns.push_back(WithRow(IntegerVector(v.size(), mpz_class(0)), 1));
+  program.c.assign(program.columns.size(), Rational(0));
+  program.c[columns.size()] = 1;
+  program.b = WithRow(v, 1);
+  const ProgramSolution solution = SolveLinearProgram(program);
+  const auto size = static_cast<Eigen::Index>(v.size());
+  internal::MembershipSolution result;
+  result.feasible = solution.status == ProgramStatus::kOptimal;
+  result.y = solution.y.head(size);
+  if (!result.feasible) return result;
+  for (Rational& x : result.y) x = -x;
+  result.t = solution.x[columns.size()];
+  result.weights.resize(static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    result.weights[static_cast<Eigen::Index>(i)] = solution.x[i] + result.t;
+  }
+  return result;
+}
+
+ConeMembership Decide(const std::vector<VectorXq>& generators, const VectorXq& v, Solver solver) {
   ConeMembership result;
   if (generators.empty()) {  // the cone {0}
     result.where = IsZero(v) ? Membership::kBoundary : Membership::kOutside;
@@ -81,7 +126,7 @@ ConeMembership Decide(const std::vector<VectorXq>& generators, const VectorXq& v
   Rational scale;
   const IntegerVector target = ToIntegers(v, &scale);
   Balance(scale, &columns, &scales);
-  const auto solution = internal::SolveMembership(columns, target);
+  const auto solution = solver(columns, target);
   if (!solution.feasible) {
     result.y = solution.y;
     return result;
@@ -111,18 +156,27 @@ bool IsSupporting(const std::vector<VectorXq>& generators, const VectorXq& y) {
                      [&](const VectorXq& a) { return Dot(y, a) <= 0; });
 }
 
-}  // namespace
-
-ConeMembership DecideConeMembership(const std::vector<VectorXq>& generators, const VectorXq& v) {
+ConeMembership DecideBy(Solver solver, const std::vector<VectorXq>& generators, const VectorXq& v) {
   Require(v.size() > 0, "a cone needs a space of at least one dimension");
   for (const VectorXq& a : generators) {
     Require(a.size() == v.size(), "every generator must have the size of the vector");
   }
-  ConeMembership result = Decide(generators, v);
+  ConeMembership result = Decide(generators, v, solver);
   if (!CheckConeMembership(generators, v, result)) {
     throw Error(Error::Code::kInternal, "the exact membership program returned no valid proof");
   }
   return result;
+}
+
+}  // namespace
+
+ConeMembership DecideConeMembership(const std::vector<VectorXq>& generators, const VectorXq& v) {
+  return DecideBy(&SolveByLp, generators, v);
+}
+
+ConeMembership DecideConeMembershipByQp(const std::vector<VectorXq>& generators,
+                                        const VectorXq& v) {
+  return DecideBy(&internal::SolveMembership, generators, v);
 }
 
 bool CheckConeMembership(const std::vector<VectorXq>& generators, const VectorXq& v,

@@ -27,7 +27,7 @@ struct ConeMembership {
 /** Decides over Q where v lies with respect to cone(generators) = { sum weight_i a_i, weight >= 0
  }.
 
- Maximises t with v = sum (weight_i + t) a_i, 0 <= t <= 1, by CGAL's QP_solver over the integers. v
+ Maximises t with v = sum (weight_i + t) a_i, 0 <= t <= 1, by SolveLinearProgram. v
  is in the relative interior iff t > 0, because the relative interior of a finitely generated cone
  is the set of its all-positive combinations [Rockafellar 1970, Thm. 6.9]. The interior is that
  where the generators span R^n, and empty elsewhere.
@@ -36,6 +36,10 @@ struct ConeMembership {
  CheckConeMembership.
  @post CheckConeMembership(generators, v, result). */
 ConeMembership DecideConeMembership(const std::vector<VectorXq>& generators, const VectorXq& v);
+
+/** The same program solved by CGAL's QP_solver over the integers: an independent reference.
+ @throws Error also where the library fails. */
+ConeMembership DecideConeMembershipByQp(const std::vector<VectorXq>& generators, const VectorXq& v);
 
 /** Whether the result proves what it claims; uses nothing but arithmetic on the witness. */
 bool CheckConeMembership(const std::vector<VectorXq>& generators, const VectorXq& v,

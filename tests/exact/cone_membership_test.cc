@@ -22,6 +22,9 @@ VectorXq Vec(std::initializer_list<int> x) {
 Membership Where(const Generators& generators, const VectorXq& v) {
   const ConeMembership result = DecideConeMembership(generators, v);
   REQUIRE(CheckConeMembership(generators, v, result));
+  const ConeMembership reference = DecideConeMembershipByQp(generators, v);
+  REQUIRE(reference.where == result.where);
+  REQUIRE(CheckConeMembership(generators, v, reference));
   return result.where;
 }
 

@@ -99,7 +99,9 @@ std::string CheckCone(ByteStream& in, bool thorough, Tally* tally) {
   if (!thorough) return "";
   ++tally->checked;
   const auto twin = exact::DecideConeMembership(cone.ExactColumns(), v->Exact());
-  return twin.where == answer.where ? "" : "the exact twin answers differently";
+  if (twin.where != answer.where) return "the exact twin answers differently";
+  const auto program = exact::DecideConeMembershipByQp(cone.ExactColumns(), v->Exact());
+  return program.where == answer.where ? "" : "quadratic programming answers differently";
 }
 
 std::string CheckFacets(ByteStream& in, bool thorough, Tally* tally) {

@@ -8,6 +8,7 @@
 #include "cguide/exact/convex_distance.h"
 #include "cguide/exact/core/error.h"
 #include "cguide/exact/linear_algebra.h"
+#include "cguide/numeric/certified_facets.h"
 #include "cguide/numeric/cone_membership.h"
 #include "cguide/numeric/convex_distance.h"
 #include "cguide/numeric/stability.h"
@@ -62,6 +63,7 @@ TEST_CASE("Every gold cone gets its expected answer from all that decide members
     CAPTURE(gold.name);
     const auto exact = exact::DecideConeMembership(gold.generators, gold.demand);
     REQUIRE(exact.where == gold.expect);
+    REQUIRE(exact::DecideConeMembershipByQp(gold.generators, gold.demand).where == gold.expect);
     if (gold.rank) REQUIRE(exact::Rank(gold.generators) == *gold.rank);
     if (gold.forces) {
       ++as_forces;
@@ -88,6 +90,12 @@ TEST_CASE(
                      : gold.expect == exact::Membership::kBoundary ? Sign::kZero
                                                                    : Sign::kPositive));
     if (gold.facets) REQUIRE(static_cast<int>(facets.facets.size()) == *gold.facets);
+    if (gold.forces) {
+      REQUIRE(numeric::ExactFacets(*gold.forces, numeric::CertifiedFacets(*gold.forces)) == facets);
+    }
+    bool all = false;
+    const auto wrenches = AsWrenches(gold.generators, &all);
+    if (all) REQUIRE(numeric::ExactFacets(wrenches, numeric::CertifiedFacets(wrenches)) == facets);
     if (gold.rank) REQUIRE(static_cast<int>(facets.equations.size()) == 6 - *gold.rank);
   }
 }
