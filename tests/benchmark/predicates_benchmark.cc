@@ -1,5 +1,5 @@
 // Exact and filtered predicates against other libraries, on the same inputs in one run, as ratios.
-//   predicates_benchmark [membership] [facets] [distance] [features] [--twin-pairs=N]
+//   predicates_benchmark [membership] [facets] [distance] [features] [wrong] [--twin-pairs=N]
 // All sections without arguments. --twin-pairs compares so many adversarial pairs of hulls with the
 // exact twin as well. Exit 1 where an answer of ours is wrong.
 #include <cfenv>
@@ -12,6 +12,7 @@
 #include "tests/benchmark/dual_section.h"
 #include "tests/benchmark/features_section.h"
 #include "tests/benchmark/membership_section.h"
+#include "tests/benchmark/wrong_section.h"
 
 int main(int argc, char** argv) {
   using namespace cguide::benchmark_tools;  // NOLINT: a program of one file
@@ -31,5 +32,8 @@ int main(int argc, char** argv) {
   if (wants("membership")) ReportMembership(stdout);
   if (wants("facets")) ReportDual(stdout);
   if (wants("features")) ReportFeatures(stdout);
-  return wants("distance") && ReportDistances(stdout, options) != 0 ? 1 : 0;
+  long wrong = 0;
+  if (wants("distance")) wrong += ReportDistances(stdout, options);
+  if (wants("wrong")) wrong += ReportWrongMembership(stdout);
+  return wrong == 0 ? 0 : 1;
 }

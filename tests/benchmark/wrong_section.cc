@@ -1,0 +1,183 @@
+#include "tests/benchmark/wrong_section.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "cguide/numeric/cone_membership.h"
+#include "tests/cases/wrench_sets.h"
+#include "tests/peers/cdd_peer.h"
+#include "tests/peers/glpk_peer.h"
+
+namespace cguide::benchmark_tools {
+namespace {
+
+using exact::Membership;
+using numeric::ConeWorkspace;
+using numeric::Rng;
+using numeric::WrenchCone;
+using testing::Storage;
+using testing::WrenchSet;
+using Vector6d = WrenchCone::Vector6d;
+
+Vector6d Rounded(const AppliedForce& a) {
+  Vector6d wrench;
+  wrench << a.u, a.p[1] * a.u[2] - a.p[2] * a.u[1], a.p[2] * a.u[0] - a.p[0] * a.u[2],
+      a.p[0] * a.u[1] - a.p[1] * a.u[0];
+  return wrench;
+}
+
+constexpr const char* kEngines[] = {"GLPK", "GLPK 1e-12", "cdd facets", "ours, fast", "ours"};
+
+/** Wrong verdicts of one family; `unsafe` are those that call an outside wrench a member. */
+struct Row {
+  std::string name;
+  long asked = 0, wrong[5] = {}, unsafe[5] = {}, failed[5] = {};
+};
+
+/** The facets as their users read them: the closed cone, by the raw signs. */
+bool InsideFacets(const peers::FacetList& list, const Vector6d& v) {
+  for (const Vector6d& h : list.facets) {
+    if (h.dot(v) > 0) return false;
+  }
+  for (const Vector6d& e : list.equations) {
+    if (e.dot(v) != 0) return false;
+  }
+  return true;
+}
+
+/** One generator list with everything that is prepared for it. */
+struct Subject {
+  std::vector<Vector6d> generators;
+  WrenchCone cone;
+  peers::FacetList facets;
+
+  explicit Subject(const WrenchSet& set) {
+    for (const AppliedForce& a : set.generators) generators.push_back(Rounded(a));
+    cone = WrenchCone::OfWrenches(generators);
+    facets = peers::CddFacets(generators);
+  }
+};
+
+class Judge {
+ public:
+  void Ask(const Subject& subject, const Vector6d& v, Row* row) {
+    const numeric::ConeAnswer answer = ConeMembership(subject.cone, v, &workspace_);
+    const bool proved =
+        exact::CheckConeMembership(subject.cone.ExactColumns(), numeric::WrenchDemand(v).Exact(),
+                                   ExactProof(subject.cone, v, answer));
+    const bool member = answer.where != Membership::kOutside;
+    ++row->asked;
+    const auto note = [&](int engine, bool says, bool failed) {
+      row->failed[engine] += failed;
+      if (failed || says == member) return;
+      ++row->wrong[engine];
+      row->unsafe[engine] += says;
+    };
+    note(0, peers::GlpkMember(subject.generators, v), false);
+    note(1, peers::GlpkMember(subject.generators, v, {.tolerance = 1e-12}), false);
+    note(2, InsideFacets(subject.facets, v), subject.facets.failed);
+    const auto fast = TryConeMembership(subject.cone, v, &workspace_);
+    note(3, fast && fast->where != Membership::kOutside, !fast);
+    if (!proved) ++row->wrong[4];
+  }
+
+  bool IsMember(const Subject& subject, const Vector6d& v) {
+    return ConeMembership(subject.cone, v, &workspace_).where != Membership::kOutside;
+  }
+
+ private:
+  ConeWorkspace workspace_;
+};
+
+void Print(std::FILE* out, const Row& row) {
+  std::fprintf(out, "| %s | %ld |", row.name.c_str(), row.asked);
+  for (int e = 0; e < 5; ++e) {
+    std::fprintf(out, " %ld (%ld)", row.wrong[e], row.unsafe[e]);
+    if (row.failed[e] > 0)
+      std::fprintf(out, e == 3 ? ", %ld declined" : ", %ld failed", row.failed[e]);
+    std::fprintf(out, " |");
+  }
+  std::fprintf(out, "\n");
+}
+
+Row OrdinaryStances(Judge* judge) {
+  Row row{"ordinary stances"};
+  Rng rng(501);
+  for (int i = 0; i < 60; ++i) {
+    const Storage storage = i % 2 ? Storage::kRounded : Storage::kSnapped;
+    const WrenchSet set = testing::RandomStanceSet(1 + i % 4, i % 3 ? 4 : 8, storage, rng);
+    const Subject subject(set);
+    for (int k = 0; k < 30; ++k) {
+      judge->Ask(subject, Rounded(testing::RandomDemand(set, storage, rng)), &row);
+    }
+  }
+  return row;
+}
+
+/** Rows for 10^-3, 10^-6 ... m on either side of the boundary, and the boundary as computed. */
+std::vector<Row> NearTies(Judge* judge) {
+  std::vector<Row> rows;
+  for (const int decade : {-3, -6, -8, -10, -12, -14, -15})
+    rows.push_back({"1e" + std::to_string(decade) + " m from a tie"});
+  rows.push_back({"a tie as computed"});
+  Rng rng(502);
+  for (int i = 0; i < 80; ++i) {
+    const Storage storage = i % 2 ? Storage::kRounded : Storage::kSnapped;
+    const WrenchSet set = testing::RandomStanceSet(1 + i % 3, 4, storage, rng);
+    const Subject subject(set);
+    const AppliedForce demand = testing::RandomDemand(set, storage, rng);
+    const auto at = [&](double offset) { return Rounded(testing::Displaced(set, demand, offset)); };
+    double in = -(demand.p - set.centroid).head<2>().norm(), out = 2;
+    if (!judge->IsMember(subject, at(in)) || judge->IsMember(subject, at(out))) continue;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (in + out);
+      (judge->IsMember(subject, at(middle)) ? in : out) = middle;
+    }
+    int row = 0;
+    for (const double step : {1e-3, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15}) {
+      for (const double side : {-1.0, 1.0}) judge->Ask(subject, at(in + side * step), &rows[row]);
+      ++row;
+    }
+    for (const double offset : {in, out}) judge->Ask(subject, at(offset), &rows[row]);
+  }
+  return rows;
+}
+
+std::vector<Row> ExactTies(Judge* judge) {
+  std::vector<Row> rows;
+  Rng rng(503);
+  for (const testing::TieCase& tie : testing::TieCases(1000, rng)) {
+    if (tie.set.generators.empty()) continue;
+    Row* row = nullptr;
+    for (Row& known : rows) {
+      if (known.name == tie.name) row = &known;
+    }
+    if (!row) row = &rows.emplace_back(Row{tie.name});
+    judge->Ask(Subject(tie.set), Rounded(tie.demand), row);
+  }
+  return rows;
+}
+
+}  // namespace
+
+long ReportWrongMembership(std::FILE* out) {
+  std::fprintf(out,
+               "\nWrong verdicts on membership in the closed cone, (of these: unsafe, a non-member "
+               "called member)\n\n");
+  std::fprintf(out, "| family | asked |");
+  for (const char* name : kEngines) std::fprintf(out, " %s |", name);
+  std::fprintf(out, "\n|---|---|---|---|---|---|---|\n");
+  Judge judge;
+  std::vector<Row> rows{OrdinaryStances(&judge)};
+  for (const Row& row : NearTies(&judge)) rows.push_back(row);
+  for (const Row& row : ExactTies(&judge)) rows.push_back(row);
+  long wrong = 0;
+  for (const Row& row : rows) {
+    Print(out, row);
+    wrong += row.wrong[3] + row.wrong[4];
+  }
+  return wrong;
+}
+
+}  // namespace cguide::benchmark_tools
