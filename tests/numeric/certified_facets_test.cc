@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <numeric>
-#include <sstream>
 
 #include "cguide/exact/core/error.h"
 #include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/sampling.h"
+#include "tests/cases/gold.h"
 #include "tests/cases/wrench_sets.h"
 
 namespace cguide::numeric {
@@ -133,23 +132,12 @@ TEST_CASE("certified facets of stances, snapped and rounded, are the exact ones"
 
 TEST_CASE(
     "the cone of fixtures/gold on which a float library loses nine facets has its sixty-six") {
-  std::ifstream file(CGUIDE_FIXTURES "/gold/cones/fourteen_generators.txt");
-  std::string line;
-  std::size_t facets = 0;
   std::vector<Vector6d> generators;
-  while (std::getline(file, line)) {
-    std::istringstream words(line);
-    if (line[0] == '#') continue;
-    if (line.starts_with("facets")) {
-      words >> line >> facets;
-      continue;
-    }
-    Vector6d a;
-    for (double& x : a) words >> x;
-    REQUIRE(words);
-    // Undo the scaling of forces and moments: powers of two, so exact.
-    for (int k = 0; k < 6; ++k) a[k] = std::ldexp(a[k], k < 3 ? -20 : -40);
-    generators.push_back(a);
+  std::size_t facets = 0;
+  for (const auto& gold : testing::ReadGoldCones(CGUIDE_FIXTURES "/gold/cones.txt")) {
+    if (gold.name != "cdd_float_misses_facets") continue;
+    facets = static_cast<std::size_t>(*gold.facets);
+    for (const VectorXq& a : gold.generators) generators.emplace_back(*testing::AsDoubles(a));
   }
   REQUIRE(generators.size() == 14);
   const CertifiedDual dual = CheckAgainstExact(generators);
