@@ -138,7 +138,8 @@ std::vector<int> FacetOfTriangle(const PointSet& set, const std::vector<Face>& f
     while (facet[i] != i) i = facet[i] = facet[facet[i]];
     return i;
   };
-  for (const auto& [edge, f] : left_of) {
+  for (const auto& [edge, face] : left_of) {
+    const auto f = face;  // clang 14 does not capture structured bindings
     const int g = left_of.at({edge.second, edge.first});
     const bool flat = std::all_of(faces[g].begin(), faces[g].end(), [&](int i) {
       return CGAL::coplanar(set.points[faces[f][0]], set.points[faces[f][1]],

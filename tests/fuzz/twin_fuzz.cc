@@ -25,8 +25,8 @@ struct Arguments {
 bool Run(const Family& family, const Arguments& arguments) {
   Tally tally;
   std::vector<std::uint8_t> bytes(arguments.length);
-  const std::uint64_t every = std::max<std::uint64_t>(
-      1, arguments.count / static_cast<std::uint64_t>(arguments.independent));
+  const std::uint64_t share = arguments.count / static_cast<std::uint64_t>(arguments.independent);
+  const std::uint64_t every = arguments.seconds > 0 ? 64 : std::max<std::uint64_t>(10, share);
   const auto start = std::chrono::steady_clock::now();
   const auto more = [&](std::uint64_t i) {
     if (arguments.seconds <= 0) return i < arguments.count;
