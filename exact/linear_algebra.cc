@@ -7,12 +7,12 @@
 namespace cguide::exact {
 namespace {
 
-/** floor(sqrt(x 4^k)) / 2^k with k such that the integer root has at least 52 bits. */
-Rational RootBelow(const Rational& x, mpz_class* remainder, mpz_class* scale) {
+/** floor(sqrt(x 4^k)) / 2^k with k such that the integer root has at least bits + 2 bits. */
+Rational RootBelow(const Rational& x, int bits, mpz_class* remainder, mpz_class* scale) {
   Require(x >= 0, "the square root of a negative number is not real");
   const long excess = static_cast<long>(mpz_sizeinbase(x.get_den_mpz_t(), 2)) -
                       static_cast<long>(mpz_sizeinbase(x.get_num_mpz_t(), 2));
-  const unsigned long k = static_cast<unsigned long>(std::max(0L, (excess + 110) / 2));
+  const unsigned long k = static_cast<unsigned long>(std::max(0L, (excess + 2L * bits + 10) / 2));
   mpz_class wide, root;
   mpz_mul_2exp(wide.get_mpz_t(), x.get_num_mpz_t(), 2 * k);
   mpz_class fraction;
@@ -147,15 +147,15 @@ VectorXq Primitive(const VectorXq& v) {
   return result;
 }
 
-Rational SqrtUp(const Rational& x) {
+Rational SqrtUp(const Rational& x, int bits) {
   mpz_class remainder, scale;
-  const Rational below = RootBelow(x, &remainder, &scale);
+  const Rational below = RootBelow(x, bits, &remainder, &scale);
   return remainder == 0 ? below : Rational(below + Rational(mpz_class(1), scale));
 }
 
-Rational SqrtDown(const Rational& x) {
+Rational SqrtDown(const Rational& x, int bits) {
   mpz_class remainder, scale;
-  return RootBelow(x, &remainder, &scale);
+  return RootBelow(x, bits, &remainder, &scale);
 }
 
 }  // namespace cguide::exact

@@ -45,8 +45,9 @@ VectorXq Primitive(const VectorXq& v);
 /** The least positive integer that makes every entry of s v an integer. */
 mpz_class CommonDenominator(const VectorXq& v);
 
-/** A rational (dyadic) number >= sqrt(x), within 2^-50 relative of it; x >= 0. Likewise below. */
-Rational SqrtUp(const Rational& x);
-Rational SqrtDown(const Rational& x);
+/** A rational (dyadic) number >= sqrt(x), within 2^-bits relative of it, and sqrt(x) itself where
+ that is dyadic with no more bits; x >= 0, bits >= 50. Likewise below. */
+Rational SqrtUp(const Rational& x, int bits = 50);
+Rational SqrtDown(const Rational& x, int bits = 50);
 
 }  // namespace cguide::exact

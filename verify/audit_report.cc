@@ -103,6 +103,8 @@ Json StagesJson(const StageCounts& counts) {
   Json json;
   json["fast"] = counts.fast;
   json["exact"] = counts.exact;
+  if (counts.bits_106 > 0) json["exact_106_bits"] = counts.bits_106;
+  if (counts.bits_256 > 0) json["exact_256_bits"] = counts.bits_256;
   json["undecided"] = counts.undecided;
   return json;
 }

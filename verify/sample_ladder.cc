@@ -16,7 +16,8 @@ constexpr int kBits[] = {106, 256};
 
 }  // namespace
 
-PreparedTwins::PreparedTwins(const Model& model) : geometry(exact::PrepareModel(model)) {}
+PreparedTwins::PreparedTwins(const World& world)
+    : geometry(exact::PrepareModel(world.model())), stability(world) {}
 
 SampleLadder::SampleLadder(const World& world, const PreparedTwins& twins)
     : world_(&world),
@@ -98,22 +99,28 @@ std::optional<PairFinding> SampleLadder::NearestPair(double cutoff) {
   return nearest;
 }
 
-numeric::SettledStability SampleLadder::TestStability(StageCounts* counts) {
-  numeric::FindContacts(*world_, &workspace_.geometry, &workspace_.contacts);
-  numeric::SettledStability settled =
-      numeric::Stability(numeric::PlacedQuery(*world_, workspace_), &workspace_.stability);
-  switch (settled.stage) {
-    case numeric::StabilityStage::kFast:
+numeric::LadderedStability SampleLadder::TestStability(StageCounts* counts) {
+  numeric::LadderedStability decided = twins_->stability.Decide(q_, &workspace_);
+  switch (decided.rung) {
+    case numeric::StabilityRung::kFast:
       ++counts->fast;
       break;
-    case numeric::StabilityStage::kExact:
+    case numeric::StabilityRung::kBits106:
+      ++counts->bits_106;
       ++counts->exact;
       break;
-    case numeric::StabilityStage::kUndecided:
+    case numeric::StabilityRung::kBits256:
+      ++counts->bits_256;
+      ++counts->exact;
+      break;
+    case numeric::StabilityRung::kStored:
+      ++counts->exact;
+      break;
+    case numeric::StabilityRung::kUndecided:
       ++counts->undecided;
       break;
   }
-  return settled;
+  return decided;
 }
 
 double SampleLadder::ComMargin() {

@@ -5,15 +5,18 @@
 
 #include "cguide/exact/body_distance.h"
 #include "cguide/numeric/membership.h"
+#include "cguide/numeric/stability_ladder.h"
 #include "cguide/numeric/world.h"
 #include "cguide/verify/sampled_audit.h"
 
 namespace cguide::verify {
 
-/** The model's geometry as the exact twins read it. Immutable; shared by threads. */
+/** The world's geometry as the exact twins read it, which must outlive this. Immutable; shared by
+ * threads. */
 struct PreparedTwins {
-  explicit PreparedTwins(const Model& model);
+  explicit PreparedTwins(const numeric::World& world);
   exact::PreparedModel geometry;
+  numeric::StabilityLadder stability;
 };
 
 /** A pair that did not keep apart, or the nearest one. */
@@ -38,9 +41,8 @@ class SampleLadder {
   /** The pair with the smallest lower bound of its distance, if that is below cutoff. */
   std::optional<PairFinding> NearestPair(double cutoff);
 
-  /** Static stability, by TryStability, else the exact twin on the stored contacts where that
-   carries the errors; fills contacts(). */
-  numeric::SettledStability TestStability(StageCounts* counts);
+  /** Static stability by numeric::StabilityLadder; fills contacts(). */
+  numeric::LadderedStability TestStability(StageCounts* counts);
 
   /** Of the last TestStability: com_m (m, negative where unstable) and `force`, floats. */
   double ComMargin();

@@ -119,7 +119,7 @@ class EdgeAuditor {
 
   void AuditContacts(const Instant& at) {
     const bool only_contact = world_.model().require == GuideRequirement::kContact;
-    const numeric::SettledStability settled = ladder_.TestStability(&result_.stability);
+    const numeric::LadderedStability settled = ladder_.TestStability(&result_.stability);
     const numeric::StabilityAnswer& stable = settled.answer;
     double gap = INFINITY;
     for (const numeric::Contact& contact : ladder_.contacts()) {
@@ -177,6 +177,8 @@ void Merge(const EdgeAudit& edge, SampledAudit* all) {
 void StageCounts::Add(const StageCounts& other) {
   fast += other.fast;
   exact += other.exact;
+  bits_106 += other.bits_106;
+  bits_256 += other.bits_256;
   undecided += other.undecided;
 }
 
@@ -187,7 +189,7 @@ SampledAudit AuditSamples(const World& world, const Path& path,
   SampledAudit all;
   all.step = options.step;
   all.edges = std::max(1, static_cast<int>(path.waypoints.size()) - 1);
-  const PreparedTwins twins(world.model());
+  const PreparedTwins twins(world);
   std::vector<EdgeAudit> edges(static_cast<std::size_t>(all.edges));
   std::vector<char> done(edges.size(), 0);
   tbb::enumerable_thread_specific<SampleLadder> ladders([&] { return SampleLadder(world, twins); });

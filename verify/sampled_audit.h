@@ -21,6 +21,8 @@ struct Instant {
 struct StageCounts {
   long fast = 0;       ///< doubles with a proven bound
   long exact = 0;      ///< the exact twin
+  long bits_106 = 0;   ///< of those for balance: on exact contacts of 106 bit placements
+  long bits_256 = 0;   ///< likewise of 256 bits
   long undecided = 0;  ///< neither
   void Add(const StageCounts& other);
 };

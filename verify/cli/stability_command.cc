@@ -70,8 +70,9 @@ Question ReadQuestion(const StabilityArguments& arguments) {
 struct Answer {
   numeric::StabilityAnswer stability;
   std::string reason;  ///< where undecided
-  verify::StageCounts stage;
+  numeric::StabilityRung rung = numeric::StabilityRung::kUndecided;
   std::vector<numeric::Contact> contacts;
+  std::vector<numeric::WitnessForce> forces;  ///< a balance; indices into `contacts`
   Eigen::Vector3d com_W = Eigen::Vector3d::Zero();
 
   exact::Enclosure com_margin;
@@ -106,23 +107,58 @@ void AskMargins(const numeric::StabilityQuery& query, Answer* answer) {
 
 Answer Ask(const Question& question) {
   const numeric::World world(question.problem.model);
-  const verify::PreparedTwins twins(world.model());
+  const verify::PreparedTwins twins(world);
   verify::SampleLadder ladder(world, twins);
   ladder.Place(question.q);
   Answer answer;
-  numeric::SettledStability settled = ladder.TestStability(&answer.stage);
+  verify::StageCounts counts;
+  numeric::LadderedStability settled = ladder.TestStability(&counts);
   answer.stability = settled.answer;
   answer.reason = settled.reason;
-  answer.contacts = ladder.contacts();
+  answer.rung = settled.rung;
+  answer.contacts = std::move(settled.contacts);
+  answer.forces = std::move(settled.forces);
   answer.com_W = ladder.com_W();
   AskMargins(ladder.Query(), &answer);
+  // The distribution is over the contacts in doubles; a later rung may have found others.
+  if (answer.contacts.size() != ladder.contacts().size()) answer.distribution.reset();
   return answer;
 }
 
+const char* StageText(numeric::StabilityRung rung) {
+  switch (rung) {
+    case numeric::StabilityRung::kFast:
+      return " (decided in doubles with a bound)";
+    case numeric::StabilityRung::kStored:
+      return " (decided by the exact twin)";
+    case numeric::StabilityRung::kBits106:
+      return " (decided by the exact twin, kinematics of 106 bits)";
+    case numeric::StabilityRung::kBits256:
+      return " (decided by the exact twin, kinematics of 256 bits)";
+    case numeric::StabilityRung::kUndecided:
+      break;
+  }
+  return "";
+}
+
+const char* StageName(numeric::StabilityRung rung) {
+  switch (rung) {
+    case numeric::StabilityRung::kFast:
+      return "fast";
+    case numeric::StabilityRung::kStored:
+      return "exact";
+    case numeric::StabilityRung::kBits106:
+      return "exact_106_bits";
+    case numeric::StabilityRung::kBits256:
+      return "exact_256_bits";
+    case numeric::StabilityRung::kUndecided:
+      break;
+  }
+  return "none";
+}
+
 std::string VerdictText(const Answer& answer) {
-  const char* stage = answer.stage.exact > 0  ? " (decided by the exact twin)"
-                      : answer.stage.fast > 0 ? " (decided in doubles with a bound)"
-                                              : "";
+  const char* stage = StageText(answer.rung);
   switch (answer.stability.verdict) {
     case Verdict::kHolds:
       return std::string("statically stable") + stage;
@@ -181,7 +217,7 @@ void PrintForces(const Answer& answer) {
     return;
   }
   std::cout << "forces that balance it (N)\n";
-  for (const numeric::WitnessForce& f : answer.stability.forces) {
+  for (const numeric::WitnessForce& f : answer.forces) {
     const auto at = static_cast<std::size_t>(f.contact);
     std::cout << "  " << Vector(f.weight * f.u_W) << " at "
               << Vector(answer.contacts[at].force_point_W()) << '\n';
@@ -244,7 +280,7 @@ Json ForcesJson(const Answer& answer) {
       if (!f.isZero(0)) add(static_cast<int>(i), f);
     }
   } else if (answer.stability.verdict == Verdict::kHolds) {
-    for (const numeric::WitnessForce& f : answer.stability.forces) add(f.contact, f.weight * f.u_W);
+    for (const numeric::WitnessForce& f : answer.forces) add(f.contact, f.weight * f.u_W);
   }
   return forces;
 }
@@ -257,7 +293,7 @@ void PrintJson(const Question& question, const Answer& answer) {
   json["verdict"] = answer.stability.verdict == Verdict::kHolds   ? "stable"
                     : answer.stability.verdict == Verdict::kFails ? "unstable"
                                                                   : "undecided";
-  json["stage"] = answer.stage.exact > 0 ? "exact" : answer.stage.fast > 0 ? "fast" : "none";
+  json["stage"] = StageName(answer.rung);
   json["com_m"] = ToJson(answer.com_W);
   json["com_margin_m"] = Number(answer.com_margin.lo);
   json["com_margin_enclosure_m"] = ToJson(answer.com_margin);

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cguide/exact/contact.h"
+#include "cguide/numeric/membership.h"
+
+namespace cguide::numeric {
+
+/** The rungs that a question about the stability of a configuration climbs. */
+enum class StabilityRung {
+  kFast,     ///< FindContacts and TryStability: doubles with a proven bound
+  kStored,   ///< exact::DecideStability on the stored contacts, its proof carrying their errors
+  kBits106,  ///< exact contacts of the MPFR placement of 106 bits
+  kBits256,  ///< likewise of 256 bits
+  kUndecided
+};
+
+/** How many answers each rung gave. */
+struct StabilityRungCounts {
+  long count[5] = {0, 0, 0, 0, 0};
+  long& operator[](StabilityRung rung) { return count[static_cast<int>(rung)]; }
+  long operator[](StabilityRung rung) const { return count[static_cast<int>(rung)]; }
+};
+
+/** The stability of a configuration, and what settled it. */
+struct LadderedStability {
+  /** From kFast and kStored as Stability gives it. From the MPFR rungs the verdict, and where it
+   fails the separating wrench rounded to doubles; `exact` is the proof. */
+  StabilityAnswer answer;
+  StabilityRung rung = StabilityRung::kUndecided;
+  std::string reason;                ///< one clause for the user where undecided, else empty
+  std::vector<Contact> contacts;     ///< of the rung that spoke last, rounded to doubles
+  std::vector<WitnessForce> forces;  ///< a balance where kHolds, rounded; indices into `contacts`
+  /** Bound on how far the contacts and the centre of mass that the last rung saw are from the
+   truth (m): the largest of their errors. */
+  double width = 0;
+  std::optional<exact::StabilityResult> exact;  ///< of the last exact rung, where one was asked
+};
+
+/** Decides the static stability of configurations of one world. Immutable, shared by threads. */
+class StabilityLadder {
+ public:
+  explicit StabilityLadder(const World& world);
+
+  /** Decides for q, which is the configuration placed last in the workspace; fills
+   workspace->contacts with the float ones. Each rung is asked only if the one before declined; the
+   answer is a function of the world and q.
+
+   kHolds, kFails: for the real numbers that the doubles of q stand for (DESIGN part 2). kUndecided:
+   the reason names the boundary and its rank where contacts and CoM are known exactly, and
+   otherwise how well they are known at the last rung. Under ContactModel::kNearest only the first
+   two rungs exist. Costs: microseconds, then milliseconds, then tens to hundreds of
+   milliseconds. */
+  LadderedStability Decide(const Configuration& q, GuideWorkspace* workspace) const;
+
+  /** One MPFR rung alone. @throws Error under ContactModel::kNearest. */
+  LadderedStability DecideAt(const Configuration& q, int bits) const;
+
+ private:
+  const World* world_;
+  std::optional<exact::ContactScene> scene_;
+};
+
+}  // namespace cguide::numeric
