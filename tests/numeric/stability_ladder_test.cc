@@ -136,7 +136,10 @@ TEST_CASE("a contact at the end of the band is settled by its rung, and is none 
 TEST_CASE("nearest-pair contacts have only the float rungs") {
   Model model = MastModel(0);
   model.contact.model = ContactModel::kNearest;
-  CHECK(Decide(model, Turned(0)).rung == StabilityRung::kUndecided);
+  // Which of many closest pairs is the contact is not defined, so the verdict is not either.
+  const StabilityRung rung = Decide(model, Turned(0)).rung;
+  CHECK(rung != StabilityRung::kBits106);
+  CHECK(rung != StabilityRung::kBits256);
   const World world(model);
   CHECK_THROWS_AS(StabilityLadder(world).DecideAt(Turned(0), 106), Error);
 }
