@@ -19,7 +19,8 @@ struct Projection {
   Matrix3d slope = Matrix3d::Zero();
 };
 
-// Onto { f : |f_t| <= mu f.n }: inside, polar, or on the mantle, where f = alpha (n + mu t), alpha = (g.n
+// Onto { f : |f_t| <= mu f.n }: inside, polar, or on the mantle, where f = alpha (n + mu t), alpha
+// = (g.n
 // + mu |g_t|)/(1 + mu^2).
 Projection Project(const Vector3d& g, const Vector3d& n, double mu) {
   const double along = g.dot(n);
@@ -95,7 +96,8 @@ Dual Maximise(const ScaledContacts& c) {
   return dual;
 }
 
-/** Forces of the lifted query from scaled ones, and six of them, the base, that take the remainder. */
+/** Forces of the lifted query from scaled ones, and six of them, the base, that take the remainder.
+ */
 class Repair {
  public:
   Repair(const ScaledContacts& scaled, const LiftedQuery& lifted, std::size_t count)
@@ -130,8 +132,7 @@ class Repair {
     for (int k = 0; k < 6; ++k) {
       const Rational total = Lift(weight[k] * scaled_.v_scale) + (*correction)[k];
       if (total <= 0) return false;
-      forces_.push_back(
-          {directions[k].contact, exact::Scaled(total, directions[k].f)});
+      forces_.push_back({directions[k].contact, exact::Scaled(total, directions[k].f)});
     }
     return true;
   }
@@ -144,15 +145,16 @@ class Repair {
     const Vector3q& w = lifted_.query.contacts[i].cone.w;
     const Rational scale = Lift(weight) * (weight == 1 ? Rational(1) : Lift(scaled_.v_scale));
     if (scaled_.mu[contact] > 0) return {i, exact::Scaled(scale, Lift(f))};
-    const double length = std::sqrt(NearestDouble(exact::SquaredNorm(w)));  // along the normal alone
+    const double length =
+        std::sqrt(NearestDouble(exact::SquaredNorm(w)));  // along the normal alone
     return {i, exact::Scaled(scale * Lift(f.norm() / length), w)};
   }
 
   VectorXq WrenchOf(const exact::ContactForce& force) const {
     VectorXq wrench(6);
     wrench.head(3) = force.f;
-    wrench.tail(3) = exact::Cross(
-        lifted_.query.contacts[force.contact].p - lifted_.query.com, force.f);
+    wrench.tail(3) =
+        exact::Cross(lifted_.query.contacts[force.contact].p - lifted_.query.com, force.f);
     return wrench;
   }
 

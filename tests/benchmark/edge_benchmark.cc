@@ -1,8 +1,6 @@
 // The cost of certifying the edges of guides, against sampling them: kinematics over a leaf, and
 // freedom from collisions over whole edges. One thread, one run; medians of CPU time.
 //   edge_benchmark [PROBLEM] [SEEDS]
-#include <time.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -14,28 +12,13 @@
 #include "cguide/planner/rrt.h"
 #include "cguide/verify/edge_collision.h"
 #include "cguide/verify/edge_stability.h"
+#include "tests/benchmark/timing.h"
 
 namespace {
 
 using namespace cguide;  // NOLINT: a program of one file
-
-double Microseconds() {
-  timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
-}
-
-template <typename Work>
-double TimeOf(int repeats, const Work& work) {
-  const double start = Microseconds();
-  for (int i = 0; i < repeats; ++i) work();
-  return (Microseconds() - start) / repeats;
-}
-
-double Quantile(std::vector<double> x, double p) {
-  std::sort(x.begin(), x.end());
-  return x[static_cast<std::size_t>(p * static_cast<double>(x.size() - 1))];
-}
+using benchmark_tools::MicrosecondsOf;
+using benchmark_tools::Quantile;
 
 double Mean(const std::vector<double>& x) {
   double sum = 0;
@@ -66,7 +49,7 @@ std::vector<Edge> GuideEdges(const numeric::Problem& problem, const numeric::Wor
 template <int N>
 void ReportKinematics(const numeric::World& world, const Edge& edge, double plain) {
   verify::TaylorState<N> placed;
-  const double us = TimeOf(2000, [&] {
+  const double us = MicrosecondsOf(2000, [&] {
     verify::EvaluateEdge<N>(world.tree(), edge, {0.5 + 0x1p-6, 0x1p-6}, &placed);
   });
   std::printf(
@@ -82,8 +65,8 @@ void ReportCollisions(const numeric::World& world, const std::vector<Edge>& edge
   for (const Edge& edge : edges) {
     verify::EdgeCollision result;
     certified.push_back(
-        TimeOf(3, [&] { result = DecideEdgeCollision(world, edge, {}, &workspace); }));
-    sampled.push_back(TimeOf(1, [&] {
+        MicrosecondsOf(3, [&] { result = DecideEdgeCollision(world, edge, {}, &workspace); }));
+    sampled.push_back(MicrosecondsOf(1, [&] {
       TestSampledEdge(world, edge, {.step = 0.001, .space = numeric::Space::kFree}, &sampling);
     }));
     leaves += result.leaves;
@@ -110,7 +93,7 @@ void ReportStability(const numeric::World& world, const std::vector<Edge>& edges
   for (const Edge& edge : edges) {
     verify::EdgeStability result;
     certified.push_back(
-        TimeOf(1, [&] { result = DecideEdgeStability(world, edge, {}, &workspace); }));
+        MicrosecondsOf(1, [&] { result = DecideEdgeStability(world, edge, {}, &workspace); }));
     leaves += result.leaves;
     holds += result.verdict == Verdict::kHolds;
     fails += result.verdict == Verdict::kFails;
@@ -139,8 +122,8 @@ int main(int argc, char** argv) {
     return 1;
   }
   numeric::KinematicState placed;
-  const double plain =
-      TimeOf(2000, [&] { numeric::ForwardKinematics(world.tree(), edges[0].from, &placed); });
+  const double plain = MicrosecondsOf(
+      2000, [&] { numeric::ForwardKinematics(world.tree(), edges[0].from, &placed); });
   std::printf("kinematics over 1/32 of an edge, %zu bodies; one plain evaluation: %.2f us\n",
               world.tree().bodies.size(), plain);
   ReportKinematics<0>(world, edges[0], plain);

@@ -97,7 +97,8 @@ TEST_CASE("Balance that is lost in the middle of an edge alone is refuted there"
   REQUIRE(Decide(model, edge).verdict == Verdict::kHolds);
   Model heavy = model;
   heavy.robot.links[2].com_L = {0.21, 0, 0};
-  const EdgeStability result = Decide(heavy, edge);  // 0.105 m in between, below 0.097 m at the ends
+  const EdgeStability result =
+      Decide(heavy, edge);  // 0.105 m in between, below 0.097 m at the ends
   REQUIRE(result.verdict == Verdict::kFails);
   REQUIRE(std::abs(result.s - 0.5) < 0.4);
   // Beyond the toe by 1e-7 m: unstable for |angle| < 1.4e-3 alone.
