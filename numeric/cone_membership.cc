@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/cone_simplex_internal.h"
@@ -63,7 +64,7 @@ std::optional<ConeAnswer> TryConeMembership(const WrenchCone& cone, const Wrench
 
 ConeAnswer ConeMembership(const WrenchCone& cone, const WrenchDemand& v, ConeWorkspace* workspace) {
   Require(cone.is_finite() && v.is_finite(), "a wrench has a number that is NaN or infinite");
-  if (auto answer = TryConeMembership(cone, v, workspace)) return *answer;
+  if (auto answer = TryConeMembership(cone, v, workspace)) return *std::move(answer);
   ConeAnswer answer;
   answer.stage = ConeStage::kExact;
   answer.pivots = workspace->scratch->proposal.pivots;

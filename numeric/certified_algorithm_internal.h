@@ -1,0 +1,326 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cguide/exact/linear_algebra.h"
+#include "cguide/numeric/certified_facets.h"
+#include "cguide/numeric/certified_run_internal.h"
+#include "cguide/numeric/minors_internal.h"
+
+// The double description method of CertifiedFacets, every side decided for certain.
+namespace cguide::numeric {
+
+using Basis = std::array<std::int32_t, 5>;
+
+inline double Largest(const Vector6d& y) { return y.cwiseAbs().maxCoeff(); }
+
+/** The run over integers of E words an entry; n generators, rows n .. of unit vectors behind them.
+
+ Why it is the exact algorithm: by induction every ray has five rows that are exactly independent
+ and hold it, and its set of planes is exactly those added so far that hold it. The side of a new
+ plane is the sign of the determinant of those rows and the new one, times the ray's orientation;
+ it is taken from doubles only beyond determinant_error, otherwise from integers that cannot
+ overflow. PolarGraph then does what the double description method does, and a ray born of p and q
+ lies in the planes common to both (rank 4, as they are adjacent) and in the new one: five
+ independent rows are found among those, exactly independent because their normal is not zero; the
+ ray is the multiple of that normal which is negative on a plane that holds q but not p (where p is
+ negative and q zero) or the reverse. */
+template <int E>
+class CertifiedRun {
+ public:
+  CertifiedRun(CertifiedDualWorkspace::Impl* impl, std::vector<Wide<E>> integers, int n, int rank,
+               CertifiedDual::Counters* counters)
+      : w_(*impl),
+        integers_(std::move(integers)),
+        n_(n),
+        rank_(rank),
+        tolerance_(impl->rows.determinant_error),
+        counters_(*counters) {}
+
+  /** Whether these rows (six) are independent, exactly. */
+  bool Independent(const std::array<int, 6>& rows) {
+    const Basis five{rows[0], rows[1], rows[2], rows[3], rows[4]};
+    if (std::abs(FloatNormal(five).dot(w_.rows.rows[rows[5]])) > tolerance_) return true;
+    Wide<5 * E> y[6];
+    ExactNormal(five, y);
+    return ExactProduct(y, rows[5]).Sign() != 0;
+  }
+
+  /** The simplicial cone of `rank` generators that are independent of each other and the units. */
+  void Start(std::span<const int> basis) {
+    w_.graph.Reset(n_, rank_);
+    w_.table.Reset();
+    w_.graph.StartSimplex(basis);
+    for (int k = 0; k < rank_; ++k) {
+      Basis five;
+      for (int j = 0, m = 0; j < rank_; ++j) {
+        if (j != k) five[m++] = basis[j];
+      }
+      for (int j = rank_ - 1; j < 5; ++j) five[j] = n_ + j - (rank_ - 1);
+      Store(k, five, FloatNormal(five), basis[k]);
+    }
+  }
+
+  void Add(int i);
+
+  Vector6d Normal(int slot);
+
+ private:
+  static constexpr int kWords = 30 * E;
+
+  const Wide<E>* Row(int i) const { return integers_.data() + 6 * static_cast<std::size_t>(i); }
+  Vector6d FloatNormal(const Basis& b) const {
+    Vector6d y;
+    const auto& rows = w_.rows.rows;
+    NormalOfRows<double, double, double>(rows[b[0]].data(), rows[b[1]].data(), rows[b[2]].data(),
+                                         rows[b[3]].data(), rows[b[4]].data(), y.data());
+    return y;
+  }
+  // Entries are below 2^(64 E - 4), so minors of order 2, 4, 5, 6 are below 2, 24, 120, 720 times
+  // the power and fit 2, 4, 5, 6 times E words; so do the partial sums.
+  void ExactNormal(const Basis& b, Wide<5 * E>* y) const {
+    NormalOfRows<Wide<2 * E>, Wide<4 * E>, Wide<5 * E>>(Row(b[0]), Row(b[1]), Row(b[2]), Row(b[3]),
+                                                        Row(b[4]), y);
+  }
+  Wide<6 * E> ExactProduct(const Wide<5 * E>* y, int i) const {
+    Wide<6 * E> sum = y[0] * Row(i)[0];
+    for (int k = 1; k < 6; ++k) sum += y[k] * Row(i)[k];
+    return sum;
+  }
+  const Wide<5 * E>* StoredNormal(int slot);
+  int ExactSide(int slot, int i) {
+    ++counters_.exact_sides;
+    return w_.rays.orientation[slot] * ExactProduct(StoredNormal(slot), i).Sign();
+  }
+  void Store(int slot, const Basis& basis, const Vector6d& y, int inside);
+  bool TryBasis(const Basis& basis, Vector6d* y) const;
+  Basis FindBasis(int p, int q, int i, Vector6d* y);
+  Basis GreedyBasis(std::span<const int> common, int i) const;
+  Basis ExactBasis(std::span<const int> common, int i) const;
+  void Bear(int slot, int p, int q, int i);
+
+  CertifiedDualWorkspace::Impl& w_;
+  const std::vector<Wide<E>> integers_;
+  const int n_, rank_;
+  const double tolerance_;
+  CertifiedDual::Counters& counters_;
+};
+
+template <int E>
+const Wide<5 * E>* CertifiedRun<E>::StoredNormal(int slot) {
+  static_assert(sizeof(Wide<5 * E>[6]) == kWords * sizeof(std::uint64_t));
+  auto* const stored = reinterpret_cast<Wide<5 * E>*>(w_.rays.exact.data() +
+                                                      static_cast<std::size_t>(slot) * kWords);
+  if (!w_.rays.has_exact[slot]) {
+    ++counters_.exact_normals;
+    w_.rays.has_exact[slot] = 1;
+    ExactNormal(w_.rays.basis[slot], stored);
+  }
+  return stored;
+}
+
+/** `inside`: a row on whose negative side the ray lies strictly. */
+template <int E>
+void CertifiedRun<E>::Store(int slot, const Basis& basis, const Vector6d& y, int inside) {
+  CertifiedRays& rays = w_.rays;
+  const std::size_t needed = static_cast<std::size_t>(slot) + 1;
+  if (rays.basis.size() < needed || rays.exact.size() < needed * kWords) {
+    const std::size_t size = 2 * needed + 64;
+    rays.basis.resize(size);
+    rays.orientation.resize(size);
+    rays.has_exact.resize(size);
+    rays.exact.resize(size * kWords);
+  }
+  ++counters_.rays;
+  rays.basis[slot] = basis;
+  rays.orientation[slot] = 1;
+  rays.has_exact[slot] = 0;
+  const double value = y.dot(w_.rows.rows[inside]);
+  const int side = value > tolerance_ ? 1 : value < -tolerance_ ? -1 : ExactSide(slot, inside);
+  assert(side != 0);
+  if (side > 0) rays.orientation[slot] = -1;
+  w_.table.Grow(w_.graph.num_slots());
+  w_.table.Set(slot, side > 0 ? Vector6d(-y) : y);
+}
+
+/** Whether the rows are independent for certain; their normal. Each of its entries is the
+ determinant of the rows and a unit vector. */
+template <int E>
+bool CertifiedRun<E>::TryBasis(const Basis& basis, Vector6d* y) const {
+  *y = FloatNormal(basis);
+  return Largest(*y) > tolerance_;
+}
+
+// Gram-Schmidt with the farthest next; may end in dependent rows.
+template <int E>
+Basis CertifiedRun<E>::GreedyBasis(std::span<const int> common, int i) const {
+  Vector6d rest[64];
+  const int size = std::min<int>(64, static_cast<int>(common.size()));
+  Basis basis;
+  int taken = 0;
+  const auto take = [&](int row, Vector6d direction) {
+    basis[taken++] = row;
+    direction.normalize();
+    for (int k = 0; k < size; ++k) rest[k] -= direction.dot(rest[k]) * direction;
+  };
+  for (int k = 0; k < size; ++k) rest[k] = w_.rows.rows[common[k]];
+  take(i, w_.rows.rows[i]);
+  for (int j = rank_ - 1; j < 5; ++j) {
+    const int unit = n_ + j - (rank_ - 1);
+    // Units are orthogonal to each other, not to row i: near enough for a choice.
+    take(unit, w_.rows.rows[unit]);
+  }
+  while (taken < 5) {
+    int best = 0;
+    for (int k = 1; k < size; ++k) {
+      if (rest[k].squaredNorm() > rest[best].squaredNorm()) best = k;
+    }
+    take(common[best], rest[best]);
+  }
+  return basis;
+}
+
+// Independent rows in exact arithmetic; there are five.
+template <int E>
+Basis CertifiedRun<E>::ExactBasis(std::span<const int> common, int i) const {
+  Basis basis;
+  int taken = 0;
+  std::vector<VectorXq> chosen;
+  const auto offer = [&](int row) {
+    VectorXq v(6);
+    for (int k = 0; k < 6; ++k) v[k] = ToInteger(Row(row)[k]);
+    chosen.push_back(v);
+    if (exact::Rank(chosen) == static_cast<int>(chosen.size())) {
+      basis[taken++] = row;
+    } else {
+      chosen.pop_back();
+    }
+  };
+  offer(i);
+  for (int j = rank_ - 1; j < 5; ++j) offer(n_ + j - (rank_ - 1));
+  for (std::size_t k = 0; k < common.size() && taken < 5; ++k) offer(common[k]);
+  assert(taken == 5);
+  return basis;
+}
+
+// Five independent rows among those common to p and q, and i.
+template <int E>
+Basis CertifiedRun<E>::FindBasis(int p, int q, int i, Vector6d* y) {
+  constexpr double kGood = 1e-5;  // no verdict depends on it
+  const PolarGraph& graph = w_.graph;
+  std::vector<int>& common = w_.common;
+  common.clear();
+  const auto a = graph.planes(p), b = graph.planes(q);
+  for (std::size_t word = 0; word < a.size(); ++word) {
+    for (std::uint64_t bits = a[word] & b[word]; bits != 0; bits &= bits - 1) {
+      common.push_back(static_cast<int>(64 * word) + std::countr_zero(bits));
+    }
+  }
+  bool certain = false;
+  Basis basis;
+  for (const int parent : {p, q}) {
+    int kept = 0, lost = -1;
+    const int other = parent == p ? q : p;
+    basis = w_.rays.basis[parent];
+    for (int k = 0; k < 5; ++k) {
+      if (basis[k] >= n_ || graph.Holds(basis[k], other)) {
+        ++kept;
+      } else {
+        lost = k;
+      }
+    }
+    if (kept != 4) continue;
+    basis[lost] = i;
+    certain = TryBasis(basis, y);
+    if (certain && Largest(*y) > kGood) return basis;
+    // Four independent rows stay so, and row i is off the face: independent for certain, though
+    // the doubles cannot see it.
+    certain = true;
+    if (static_cast<int>(common.size()) == rank_ - 2) return basis;  // there is no other
+    break;
+  }
+  const Basis greedy = GreedyBasis(common, i);
+  Vector6d z;
+  if (TryBasis(greedy, &z) && (!certain || Largest(z) > Largest(*y))) {
+    *y = z;
+    return greedy;
+  }
+  if (certain) return basis;
+  basis = ExactBasis(common, i);
+  *y = FloatNormal(basis);
+  return basis;
+}
+
+template <int E>
+void CertifiedRun<E>::Bear(int slot, int p, int q, int i) {
+  Vector6d y;
+  const Basis basis = FindBasis(p, q, i, &y);
+  // Planes that hold one parent only; the ray is strictly inside all of them. The clearest.
+  int inside = -1;
+  double clearest = -1;
+  for (const int parent : {p, q}) {
+    const int other = parent == p ? q : p;
+    for (const int row : w_.rays.basis[parent]) {
+      if (row >= n_ || w_.graph.Holds(row, other)) continue;
+      const double size = std::abs(y.dot(w_.rows.rows[row]));
+      if (size > clearest) {
+        clearest = size;
+        inside = row;
+      }
+    }
+  }
+  Store(slot, basis, y, inside);
+}
+
+template <int E>
+void CertifiedRun<E>::Add(int i) {
+  PolarGraph& graph = w_.graph;
+  auto& [outside, on_plane] = *graph.sides();
+  outside.clear();
+  on_plane.clear();
+  const int found = w_.table.Multiply(w_.rows.rows[i], tolerance_);
+  for (int k = 0; k < found; ++k) {
+    const int s = w_.table.list()[k];
+    if (w_.table.value(s) > tolerance_) {
+      outside.push_back(s);
+    } else if (graph.alive(s)) {
+      const int side = ExactSide(s, i);
+      if (side > 0) outside.push_back(s);
+      if (side == 0) on_plane.push_back(s);
+    }
+  }
+  graph.Cut(i, [&](int slot, int p, int q) { Bear(slot, p, q, i); });
+  for (const int s : outside) w_.table.Set(s, Vector6d::Zero());
+}
+
+/** Unit normal in the space of the generators; from integers where the doubles are weak. */
+template <int E>
+Vector6d CertifiedRun<E>::Normal(int slot) {
+  Vector6d y = w_.table.Get(slot);
+  if (Largest(y) > 1e7 * tolerance_) return w_.rows.Unscaled(y).normalized();
+  const Wide<5 * E>* const exact = StoredNormal(slot);
+  mpz_class integer[6];
+  int exponent[6], top = std::numeric_limits<int>::min();
+  double fraction[6];
+  for (int k = 0; k < 6; ++k) {
+    integer[k] = ToInteger(exact[k]);
+    long e = 0;
+    fraction[k] = w_.rays.orientation[slot] * mpz_get_d_2exp(&e, integer[k].get_mpz_t());
+    exponent[k] = static_cast<int>(e) - w_.rows.low[k];
+    if (fraction[k] != 0) top = std::max(top, exponent[k]);
+  }
+  for (int k = 0; k < 6; ++k) {
+    y[k] = fraction[k] == 0 ? 0 : std::ldexp(fraction[k], exponent[k] - top);
+  }
+  return y.normalized();
+}
+
+}  // namespace cguide::numeric
