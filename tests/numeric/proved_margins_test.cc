@@ -6,6 +6,7 @@
 
 #include "cguide/exact/core/error.h"
 #include "cguide/exact/linear_algebra.h"
+#include "cguide/exact/wrench_polyhedra.h"
 #include "tests/numeric/stability_cases.h"
 
 namespace cguide::numeric {
@@ -284,4 +285,27 @@ TEST_CASE("Numbers that are none are refused") {
 }
 
 }  // namespace
+TEST_CASE("The force margin by certified facets is that of the textbook's facets, bit for bit") {
+  Rng rng(77);
+  for (int i = 0; i < 12; ++i) {
+    testing::Stance stance;
+    const Eigen::Vector3d normals[] = {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}, {0.36, 0.48, 0.8}};
+    // Three rounds of axis-aligned contacts, whose generators doubles hold, and one tilted.
+    for (int k = 0; k < 2; ++k) {
+      testing::AddPatch({Uniform(rng), Uniform(rng), k * 0.5}, normals[k == 0 ? 0 : i % 4], 0, 0.5,
+                        0.11, 0.06, &stance);
+    }
+    for (Contact& c : stance.contacts) c.normal_error = 0;
+    stance.com = {0.5, 0.5, 0.8};
+    const StabilityQuery query = stance.Query();
+    const auto proved = ProveForceMargin(query);
+    const LiftedQuery lifted = LiftCertain(query);
+    const auto reference = exact::ForceMargin(
+        lifted.query, exact::WrenchFacets(exact::InscribedCone(lifted.query, query.generators)));
+    REQUIRE(proved);
+    CHECK(proved->lo == reference.lo);
+    CHECK(proved->hi == reference.hi);
+  }
+}
+
 }  // namespace cguide::numeric
