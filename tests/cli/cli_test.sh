@@ -62,6 +62,12 @@ section_main_job() {
   says_not proved
   expect 0 audit "$work/guide.json" --dense 0.005 --format json -o "$work/report.json"
   grep -q '"schema": "cguide-audit/1"' "$work/report.json" || fail "the report has no schema"
+  # Whole edges, no samples: what holds there holds between samples too.
+  local code=0
+  "$program" audit "$work/guide.json" >"$work/whole.txt" 2>"$work/err" || code=$?
+  case $code in 0 | 1 | 4) ;; *) fail "audit of whole edges ends with code $code" ;; esac
+  grep -q "edges hold for every s" "$work/whole.txt" || fail "the audit of whole edges does not say so"
+  ! grep -qi proved "$work/whole.txt" || fail "an audit without certificate speaks of proof"
   expect 0 stability --guide "$work/guide.json" --at 0.5
   says "statically stable"
   says "support region"
@@ -143,6 +149,8 @@ section_foreign_path() {
   # The same path half a metre up: no contact and no balance at any sample.
   awk -F, -v OFS=, 'NR > 1 { $3 += 0.5 } { print }' "$work/path.csv" >"$work/up.csv"
   expect 1 audit "$work/up.csv" --problem "$room" --dense 0.005
+  expect 1 audit "$work/up.csv" --problem "$room"
+  says "for every s"
   says "balance lost"
   # And 3 cm down: the feet are in the floor.
   awk -F, -v OFS=, 'NR > 1 { $3 -= 0.03 } { print }' "$work/path.csv" >"$work/down.csv"

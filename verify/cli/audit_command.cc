@@ -7,6 +7,7 @@
 #include "cguide/verify/cli/console.h"
 #include "cguide/verify/cli/subject.h"
 #include "cguide/verify/cli/version.h"
+#include "cguide/verify/whole_report.h"
 
 namespace cguide::cli {
 namespace {
@@ -17,17 +18,22 @@ int ExitCodeOf(const verify::SampledAudit& audit) {
   return audit.verdict == Verdict::kHolds ? kExitOk : kExitUndecided;
 }
 
-}  // namespace
+int ExitCodeOf(const verify::WholeAudit& audit) {
+  if (audit.verdict == Verdict::kFails) return kExitRefuted;
+  if (audit.edges_done < static_cast<int>(audit.edges.size())) return kExitInterrupted;
+  return audit.verdict == Verdict::kHolds ? kExitOk : kExitUndecided;
+}
 
-int RunAudit(const AuditArguments& arguments) {
-  if (!(arguments.dense_step > 0)) {
-    std::cerr
-        << "cguide audit: name the step with --dense STEP; this version audits samples only\n";
-    return kExitUsage;
+void Deliver(const AuditArguments& arguments, const std::string& report) {
+  if (arguments.output.empty()) {
+    std::cout << report;
+  } else {
+    numeric::io::WriteFileAtomically(arguments.output, report);
   }
-  if (!arguments.output.empty()) RequireWritable(arguments.output);
-  const Subject subject = ReadSubject(arguments.common, arguments.path, arguments.problem);
-  const numeric::World world(subject.problem.model);
+}
+
+int AuditSamplesOf(const AuditArguments& arguments, const Subject& subject,
+                   const numeric::World& world, const verify::AuditSubject& about) {
   ProgressLine progress(arguments.common);
   verify::SampledAuditOptions options;
   options.step = arguments.dense_step;
@@ -37,17 +43,37 @@ int RunAudit(const AuditArguments& arguments) {
     progress.Show("auditing: edge " + std::to_string(done) + " of " + std::to_string(edges));
   };
   const verify::SampledAudit audit = verify::AuditSamples(world, subject.path, options);
+  const Model& model = subject.problem.model;
+  Deliver(arguments, arguments.format == "json" ? verify::WriteAuditJson(about, model, audit)
+                                                : verify::WriteAuditText(about, model, audit));
+  return ExitCodeOf(audit);
+}
+
+int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
+                    const numeric::World& world, const verify::AuditSubject& about) {
+  ProgressLine progress(arguments.common);
+  verify::WholeAuditOptions options;
+  options.interrupt = &InterruptFlag();
+  options.on_progress = [&](int done, int edges) {
+    progress.Show("auditing: edge " + std::to_string(done) + " of " + std::to_string(edges));
+  };
+  const verify::WholeAudit audit = verify::AuditWhole(world, subject.path, options);
+  const Model& model = subject.problem.model;
+  Deliver(arguments, arguments.format == "json" ? verify::WriteWholeJson(about, model, audit)
+                                                : verify::WriteWholeText(about, model, audit));
+  return ExitCodeOf(audit);
+}
+
+}  // namespace
+
+int RunAudit(const AuditArguments& arguments) {
+  if (!arguments.output.empty()) RequireWritable(arguments.output);
+  const Subject subject = ReadSubject(arguments.common, arguments.path, arguments.problem);
+  const numeric::World world(subject.problem.model);
   const verify::AuditSubject about{arguments.path, subject.problem_file,
                                    subject.problem.model_digest, kVersion};
-  const std::string report = arguments.format == "json"
-                                 ? verify::WriteAuditJson(about, subject.problem.model, audit)
-                                 : verify::WriteAuditText(about, subject.problem.model, audit);
-  if (arguments.output.empty()) {
-    std::cout << report;
-  } else {
-    numeric::io::WriteFileAtomically(arguments.output, report);
-  }
-  return ExitCodeOf(audit);
+  return arguments.dense_step > 0 ? AuditSamplesOf(arguments, subject, world, about)
+                                  : AuditWholeEdges(arguments, subject, world, about);
 }
 
 }  // namespace cguide::cli

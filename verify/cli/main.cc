@@ -52,7 +52,8 @@ CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
       app.add_subcommand("audit", "Say whether a guide or a foreign path stays in C_guide");
   c->add_option("path", a->path, "Guide (JSON), or path (CSV) with --problem")->required();
   c->add_option("--problem", a->problem, "Problem file; default: the one the guide names");
-  c->add_option("--dense", a->dense_step, "Sample every edge at this step")
+  c->add_option("--dense", a->dense_step,
+                "Sample every edge at this step; default: decide whole edges")
       ->check(CLI::Range(1e-6, 1.0));
   c->add_option("--format", a->format, "Form of the report")
       ->check(CLI::IsMember({"text", "json"}))

@@ -1,0 +1,77 @@
+#include "cguide/verify/whole_audit.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cguide/exact/core/error.h"
+#include "cguide/numeric/io/problem_reader.h"
+#include "cguide/verify/whole_report.h"
+
+namespace cguide::verify {
+namespace {
+
+struct Room {
+  numeric::Problem problem =
+      numeric::io::ReadProblem(CGUIDE_FIXTURES "/problems/chair_and_table.yaml");
+  numeric::World world{problem.model};
+
+  Path PathOf(std::vector<Configuration> waypoints) const {
+    return {ColumnNames(problem.model.robot), std::move(waypoints)};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A path is audited edge by edge, for every s, and its report says so") {
+  const Room room;
+  Configuration near = room.problem.start, far = room.problem.start;
+  near.joints[0] += 0.01;
+  far.X_WB.p.z() -= 0.2;  // through the seat
+  const Path path = room.PathOf({room.problem.start, near, room.problem.start, far});
+  const WholeAudit audit = AuditWhole(room.world, path, {});
+  REQUIRE(audit.edges.size() == 3);
+  CHECK(audit.edges_done == 3);
+  CHECK(audit.edges[0].collision.verdict == Verdict::kHolds);
+  CHECK(audit.edges[0].stability.verdict == Verdict::kHolds);
+  CHECK(audit.edges[2].collision.verdict == Verdict::kFails);
+  CHECK(audit.verdict == Verdict::kFails);
+  const AuditSubject subject{"p.json", "room.yaml", "sha256:0", "0"};
+  const std::string text = WriteWholeText(subject, room.problem.model, audit);
+  CHECK(text.find("2 of 3 edges hold for every s, 1 fail") != std::string::npos);
+  CHECK(text.find("edge 2") != std::string::npos);
+  CHECK(text.find("proved") == std::string::npos);  // there is no certificate
+  const auto json = nlohmann::json::parse(WriteWholeJson(subject, room.problem.model, audit));
+  CHECK(json["verdict"] == "fails");
+  CHECK(json["edges"].size() == 3);
+  CHECK(json["edges"][0]["verdict"] == "holds");
+}
+
+TEST_CASE("A lone waypoint is an edge from it to itself") {
+  const Room room;
+  const WholeAudit audit = AuditWhole(room.world, room.PathOf({room.problem.goal}), {});
+  CHECK(audit.verdict == Verdict::kHolds);
+  CHECK(audit.edges.size() == 1);
+}
+
+TEST_CASE("Waypoints beyond joint limits fail the path, and a wrong path is refused") {
+  const Room room;
+  Configuration beyond = room.problem.start;
+  beyond.joints[0] = 10;
+  const WholeAudit audit = AuditWhole(room.world, room.PathOf({room.problem.start, beyond}), {});
+  CHECK(audit.verdict == Verdict::kFails);
+  CHECK(audit.beyond_limits == std::vector<int>{1});
+  CHECK_THROWS_AS(AuditWhole(room.world, room.PathOf({}), {}), Error);
+}
+
+TEST_CASE("An interrupted audit says what it did not reach") {
+  const Room room;
+  const std::atomic<bool> stop{true};
+  WholeAuditOptions options;
+  options.interrupt = &stop;
+  const WholeAudit audit = AuditWhole(room.world, room.PathOf({room.problem.start}), options);
+  CHECK(audit.edges_done == 0);
+  const std::string text = WriteWholeText({}, room.problem.model, audit);
+  CHECK(text.find("1 not reached") != std::string::npos);
+}
+
+}  // namespace cguide::verify

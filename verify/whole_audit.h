@@ -1,0 +1,39 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "cguide/exact/core/path.h"
+#include "cguide/verify/edge_collision.h"
+#include "cguide/verify/edge_stability.h"
+
+namespace cguide::verify {
+
+/** What was decided of one whole edge. */
+struct EdgeFinding {
+  bool done = false;  ///< false where the audit was interrupted before
+  EdgeCollision collision;
+  EdgeStability stability;  ///< not asked, kUndecided, where the edge collides
+};
+
+struct WholeAuditOptions {
+  const std::atomic<bool>* interrupt = nullptr;
+  std::function<void(int done, int edges)> on_progress;
+};
+
+/** Whether every real configuration of a path, not samples of it, is in C_guide: joint limits
+ (which hold on an edge iff they hold at its ends), collisions, contact and balance. Decided in
+ doubles with derived bounds; there is no certificate that another program could re-check. */
+struct WholeAudit {
+  Verdict verdict = Verdict::kHolds;
+  std::vector<int> beyond_limits;  ///< waypoints
+  std::vector<EdgeFinding> edges;  ///< a path of one waypoint has one edge, from it to itself
+  int edges_done = 0;
+};
+
+/** @throws Error where the path does not fit the robot (CheckPath). */
+WholeAudit AuditWhole(const numeric::World& world, const Path& path,
+                      const WholeAuditOptions& options);
+
+}  // namespace cguide::verify

@@ -1,0 +1,130 @@
+#include "cguide/verify/whole_report.h"
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cguide/numeric/describe.h"
+
+namespace cguide::verify {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using numeric::Short;
+
+const char* Name(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kHolds:
+      return "holds";
+    case Verdict::kFails:
+      return "fails";
+    case Verdict::kUndecided:
+      break;
+  }
+  return "undecided";
+}
+
+struct Totals {
+  int hold = 0, fail = 0, open = 0;
+};
+
+Verdict VerdictOf(const EdgeFinding& edge) {
+  if (edge.collision.verdict == Verdict::kFails || edge.stability.verdict == Verdict::kFails) {
+    return Verdict::kFails;
+  }
+  return edge.collision.verdict == Verdict::kHolds ? edge.stability.verdict
+                                                   : edge.collision.verdict;
+}
+
+Totals Count(const WholeAudit& audit) {
+  Totals totals;
+  for (const EdgeFinding& edge : audit.edges) {
+    if (!edge.done) continue;
+    const Verdict verdict = VerdictOf(edge);
+    ++(verdict == Verdict::kHolds   ? totals.hold
+       : verdict == Verdict::kFails ? totals.fail
+                                    : totals.open);
+  }
+  return totals;
+}
+
+/** One line about an edge that does not hold. */
+std::string Describe(const Model& model, const EdgeFinding& edge) {
+  const EdgeCollision& c = edge.collision;
+  if (c.verdict == Verdict::kFails) {
+    return numeric::DescribePair(model, c.pair) + " collide at s = " + Short(c.s);
+  }
+  if (edge.stability.verdict == Verdict::kFails) {
+    const bool contact = model.require == GuideRequirement::kContact;
+    return std::string(contact ? "contact" : "balance") +
+           " is lost at s = " + Short(edge.stability.s);
+  }
+  if (c.verdict == Verdict::kUndecided) {
+    return "undecided: " + numeric::DescribePair(model, c.pair) +
+           " cannot be told apart or colliding about s = " + Short(c.s);
+  }
+  return "undecided: about s = " + Short(edge.stability.s) + " " + edge.stability.reason;
+}
+
+}  // namespace
+
+std::string WriteWholeText(const AuditSubject& subject, const Model& model,
+                           const WholeAudit& audit) {
+  const Totals totals = Count(audit);
+  std::ostringstream text;
+  text << subject.path_file << ": " << totals.hold << " of " << audit.edges.size()
+       << " edges hold for every s";
+  if (totals.fail > 0) text << ", " << totals.fail << " fail";
+  if (totals.open > 0) text << ", " << totals.open << " undecided";
+  const int left = static_cast<int>(audit.edges.size()) - audit.edges_done;
+  if (left > 0) text << ", " << left << " not reached";
+  text << "; edges: whole, without a certificate\n";
+  for (const int i : audit.beyond_limits) {
+    text << "  waypoint " << i << "  a joint is beyond its limits\n";
+  }
+  for (std::size_t i = 0; i < audit.edges.size(); ++i) {
+    if (!audit.edges[i].done || VerdictOf(audit.edges[i]) == Verdict::kHolds) continue;
+    text << "  edge " << i << "  " << Describe(model, audit.edges[i]) << '\n';
+  }
+  if (model.contact.skin > 0) {
+    text << "  penetration below the skin of " << numeric::Millimetres(model.contact.skin)
+         << " is allowed for the pairs that may touch\n";
+  }
+  return text.str();
+}
+
+std::string WriteWholeJson(const AuditSubject& subject, const Model& model,
+                           const WholeAudit& audit) {
+  Json json;
+  json["schema"] = "cguide-audit-whole/1";
+  json["tool_version"] = subject.tool_version;
+  json["path"] = subject.path_file;
+  json["problem"] = subject.problem_file;
+  json["model"] = subject.model_digest;
+  json["edges_tested"] = "whole";
+  json["skin_m"] = model.contact.skin;
+  json["verdict"] = Name(audit.verdict);
+  json["waypoints_beyond_limits"] = audit.beyond_limits;
+  json["edges"] = Json::array();
+  for (const EdgeFinding& edge : audit.edges) {
+    Json entry;
+    entry["done"] = edge.done;
+    if (edge.done) {
+      entry["verdict"] = Name(VerdictOf(edge));
+      entry["collision"] = Name(edge.collision.verdict);
+      entry["collision_leaves"] = edge.collision.leaves;
+      if (edge.collision.verdict != Verdict::kFails) {
+        entry["balance"] = Name(edge.stability.verdict);
+        entry["balance_leaves"] = edge.stability.leaves;
+      }
+      if (VerdictOf(edge) != Verdict::kHolds) {
+        entry["s"] =
+            edge.collision.verdict != Verdict::kHolds ? edge.collision.s : edge.stability.s;
+        entry["why"] = Describe(model, edge);
+      }
+    }
+    json["edges"].push_back(entry);
+  }
+  return json.dump(2) + "\n";
+}
+
+}  // namespace cguide::verify
