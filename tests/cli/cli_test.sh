@@ -149,9 +149,9 @@ section_foreign_path() {
   # The same path half a metre up: no contact and no balance at any sample.
   awk -F, -v OFS=, 'NR > 1 { $3 += 0.5 } { print }' "$work/path.csv" >"$work/up.csv"
   expect 1 audit "$work/up.csv" --problem "$room" --dense 0.005
-  expect 1 audit "$work/up.csv" --problem "$room"
-  says "for every s"
   says "balance lost"
+  expect 1 audit "$work/up.csv" --problem "$room"
+  says "balance is lost"
   # And 3 cm down: the feet are in the floor.
   awk -F, -v OFS=, 'NR > 1 { $3 -= 0.03 } { print }' "$work/path.csv" >"$work/down.csv"
   expect 1 audit "$work/down.csv" --problem "$room" --dense 0.005
