@@ -99,7 +99,7 @@ internal::MembershipSolution SolveByLp(const std::vector<IntegerVector>& columns
   const auto size = static_cast<Eigen::Index>(v.size());
   internal::MembershipSolution result;
   result.feasible = solution.status == ProgramStatus::kOptimal;
-  result.y = solution.y.head(size);
+  result.y = Primitive(solution.y.head(size));  // any positive multiple proves the same
   if (!result.feasible) return result;
   for (Rational& x : result.y) x = -x;
   result.t = solution.x[columns.size()];

@@ -27,12 +27,12 @@ struct ConeMembership {
 /** Decides over Q where v lies with respect to cone(generators) = { sum weight_i a_i, weight >= 0
  }.
 
- Maximises t with v = sum (weight_i + t) a_i, 0 <= t <= 1, by SolveLinearProgram. v
- is in the relative interior iff t > 0, because the relative interior of a finitely generated cone
- is the set of its all-positive combinations [Rockafellar 1970, Thm. 6.9]. The interior is that
+ Maximises t with v = sum (weight_i + t) a_i, 0 <= t <= 1, by SolveLinearProgram. v is in
+ the relative interior iff t > 0, because the relative interior of a finitely generated cone is the
+ set of its all-positive combinations [Rockafellar 1970, Thm. 6.9]. The interior is that
  where the generators span R^n, and empty elsewhere.
  @param generators any number of vectors of v's size, zero and repeated ones included.
- @throws Error where sizes differ or v is empty; kInternal should the library's answer not pass
+ @throws Error where sizes differ or v is empty; kInternal should the answer not pass
  CheckConeMembership.
  @post CheckConeMembership(generators, v, result). */
 ConeMembership DecideConeMembership(const std::vector<VectorXq>& generators, const VectorXq& v);

@@ -1,70 +1,66 @@
 #include "cguide/exact/linear_program.h"
 
-#include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/exact/integer_basis_internal.h"
 #include "cguide/exact/linear_algebra.h"
 
 namespace cguide::exact {
 namespace {
 
+using internal::IntegerBasis;
+using internal::IntegerProgram;
+using internal::Integers;
+
 constexpr int kPatience = 20;  // degenerate pivots before Bland's rule
 
-/** The basis, its inverse and the basic variables. Rows without a column hold an artificial unit
- column, which costs 1 in the first phase and must stay zero in the second. */
+/** log2 of x > 0 to a few units in the last place. */
+double Log2(const mpz_class& x) {
+  long exponent = 0;
+  const double mantissa = mpz_get_d_2exp(&exponent, x.get_mpz_t());
+  return std::log2(mantissa) + static_cast<double>(exponent);
+}
+
+Rational Quotient(const mpz_class& a, const mpz_class& b) {
+  Rational result(a, b);
+  result.canonicalize();
+  return result;
+}
+
+/** The simplex method on the integer form of a program. Rows without a column hold an artificial
+ unit column, which costs 1 in the first phase and must stay zero in the second. */
 class Tableau {
  public:
-  explicit Tableau(const LinearProgram& program)
-      : program_(program), m_(program.b.size()), basis_(m_, kArtificial), x_(m_) {
-    inverse_ = MatrixXq::Zero(m_, m_);
-    for (Eigen::Index i = 0; i < m_; ++i) {
-      inverse_(i, i) = program.b[i] < 0 ? -1 : 1;
-      x_[i] = abs(program.b[i]);
-    }
-  }
+  explicit Tableau(const IntegerProgram& program)
+      : program_(program), basis_(program.b), columns_(program.b.size(), kArtificial) {}
 
   bool TryStart(std::span<const int> start);
-  ProgramSolution Solve();
+  ProgramSolution Solve(const LinearProgram& rational);
 
  private:
   static constexpr int kArtificial = -1;
 
   bool Iterate(bool first_phase, int* unlimited);
-  VectorXq Multipliers(bool first_phase) const;
-  int ChooseEntering(bool first_phase, const VectorXq& y) const;
-  int ChooseLeaving(const VectorXq& alpha) const;
-  void Pivot(int row, int entering, const VectorXq& alpha);
-  VectorXq Transformed(int column) const;
-  void Report(ProgramSolution* solution) const;
+  Integers Multipliers(bool first_phase) const;
+  int ChooseEntering(bool first_phase, const Integers& y) const;
+  int ChooseLeaving(const Integers& alpha) const;
+  void Pivot(int row, int entering, const Integers& alpha);
+  void ReportPoint(const LinearProgram& rational, ProgramSolution* solution) const;
+  void ReportRay(int unlimited, ProgramSolution* solution) const;
+  VectorXq Direction(const Integers& y, const Rational& scale) const;
 
-  const LinearProgram& program_;
-  const Eigen::Index m_;
-  std::vector<int> basis_;
-  std::vector<Rational> x_;
-  MatrixXq inverse_;
+  const IntegerProgram& program_;
+  IntegerBasis basis_;
+  std::vector<int> columns_;
   int degenerate_ = 0;
   int pivots_ = 0;
 };
 
-VectorXq Tableau::Transformed(int column) const {
-  VectorXq alpha = VectorXq::Zero(m_);
-  const VectorXq& a = program_.columns[column];
-  for (Eigen::Index k = 0; k < m_; ++k) {
-    if (a[k] == 0) continue;
-    for (Eigen::Index i = 0; i < m_; ++i) alpha[i] += inverse_(i, k) * a[k];
-  }
-  return alpha;
-}
-
-void Tableau::Pivot(int row, int entering, const VectorXq& alpha) {
-  for (Eigen::Index k = 0; k < m_; ++k) inverse_(row, k) /= alpha[row];
-  x_[row] /= alpha[row];
-  for (Eigen::Index i = 0; i < m_; ++i) {
-    if (i == row || alpha[i] == 0) continue;
-    for (Eigen::Index k = 0; k < m_; ++k) inverse_(i, k) -= alpha[i] * inverse_(row, k);
-    x_[i] -= alpha[i] * x_[row];
-  }
-  basis_[row] = entering;
+void Tableau::Pivot(int row, int entering, const Integers& alpha) {
+  basis_.Pivot(row, alpha);
+  columns_[row] = entering;
   ++pivots_;
 }
 
@@ -73,62 +69,67 @@ void Tableau::Pivot(int row, int entering, const VectorXq& alpha) {
 bool Tableau::TryStart(std::span<const int> start) {
   for (const int column : start) {
     if (column < 0 || column >= static_cast<int>(program_.columns.size())) return false;
-    const VectorXq alpha = Transformed(column);
+    const Integers alpha = basis_.Transformed(program_.columns[column]);
     int row = 0;
-    while (row < m_ && (basis_[row] != kArtificial || alpha[row] == 0)) ++row;
-    if (row == m_) return false;
+    while (row < basis_.size() && (columns_[row] != kArtificial || alpha[row] == 0)) ++row;
+    if (row == basis_.size()) return false;
     Pivot(row, column, alpha);
   }
-  for (int i = 0; i < m_; ++i) {
-    if (x_[i] >= 0) continue;
-    if (basis_[i] != kArtificial) return false;
-    x_[i] = -x_[i];
-    for (Eigen::Index k = 0; k < m_; ++k) inverse_(i, k) = -inverse_(i, k);
+  for (int i = 0; i < basis_.size(); ++i) {
+    if (basis_.x(i) >= 0) continue;
+    if (columns_[i] != kArtificial) return false;
+    basis_.Negate(i);
   }
   return true;
 }
 
-VectorXq Tableau::Multipliers(bool first_phase) const {
-  VectorXq y = VectorXq::Zero(m_);
-  for (Eigen::Index i = 0; i < m_; ++i) {
-    Rational cost = 0;
-    if (basis_[i] != kArtificial) {
-      if (!first_phase) cost = program_.c[basis_[i]];
+Integers Tableau::Multipliers(bool first_phase) const {
+  Integers cost(columns_.size());
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (columns_[i] != kArtificial) {
+      if (!first_phase) cost[i] = program_.c[columns_[i]];
     } else if (first_phase) {
-      cost = -1;
+      cost[i] = -1;
     }
-    if (cost == 0) continue;
-    for (Eigen::Index k = 0; k < m_; ++k) y[k] += cost * inverse_(i, k);
   }
-  return y;
+  return basis_.Multipliers(cost);
 }
 
-int Tableau::ChooseEntering(bool first_phase, const VectorXq& y) const {
+// The largest price per size of the column, which is about the steepest direction; sizes and
+// logarithms only rank columns whose price is positive exactly.
+int Tableau::ChooseEntering(bool first_phase, const Integers& y) const {
   int best = -1;
-  Rational dearest = 0;
+  double steepest = -std::numeric_limits<double>::infinity();
+  mpz_class price;
   for (int j = 0; j < static_cast<int>(program_.columns.size()); ++j) {
-    const Rational gain = (first_phase ? Rational(0) : program_.c[j]) - Dot(y, program_.columns[j]);
-    if (gain <= dearest) continue;
+    price = 0;
+    if (!first_phase) price = program_.c[j] * basis_.d();
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      mpz_submul(price.get_mpz_t(), y[k].get_mpz_t(), program_.columns[j][k].get_mpz_t());
+    }
+    if (price <= 0) continue;
+    if (degenerate_ > kPatience) return j;
+    const double slope = Log2(price) - program_.column_size[j];
+    if (slope <= steepest) continue;
     best = j;
-    if (degenerate_ > kPatience) break;
-    dearest = gain;
+    steepest = slope;
   }
   return best;
 }
 
 // The row that first reaches zero; of equals an artificial one, else that of the least column
 // (Bland). An artificial variable at zero may move neither way.
-int Tableau::ChooseLeaving(const VectorXq& alpha) const {
+int Tableau::ChooseLeaving(const Integers& alpha) const {
   int row = -1;
-  Rational least;
-  for (int i = 0; i < m_; ++i) {
-    const bool pinned = basis_[i] == kArtificial && x_[i] == 0 && alpha[i] != 0;
+  for (int i = 0; i < basis_.size(); ++i) {
+    const bool pinned = columns_[i] == kArtificial && basis_.x(i) == 0 && alpha[i] != 0;
     if (pinned) return i;
     if (alpha[i] <= 0) continue;
-    const Rational ratio = x_[i] / alpha[i];
-    if (row >= 0 && (ratio > least || (ratio == least && basis_[i] > basis_[row]))) continue;
+    if (row >= 0) {
+      const int order = cmp(basis_.x(i) * alpha[row], basis_.x(row) * alpha[i]);
+      if (order > 0 || (order == 0 && columns_[i] > columns_[row])) continue;
+    }
     row = i;
-    least = ratio;
   }
   return row;
 }
@@ -137,56 +138,75 @@ int Tableau::ChooseLeaving(const VectorXq& alpha) const {
 bool Tableau::Iterate(bool first_phase, int* unlimited) {
   const int entering = ChooseEntering(first_phase, Multipliers(first_phase));
   if (entering < 0) return false;
-  const VectorXq alpha = Transformed(entering);
+  const Integers alpha = basis_.Transformed(program_.columns[entering]);
   const int row = ChooseLeaving(alpha);
   if (row < 0) {
     *unlimited = entering;
     return false;
   }
-  degenerate_ = x_[row] == 0 ? degenerate_ + 1 : 0;
+  degenerate_ = basis_.x(row) == 0 ? degenerate_ + 1 : 0;
   Pivot(row, entering, alpha);
   return true;
 }
 
-void Tableau::Report(ProgramSolution* solution) const {
-  solution->pivots = pivots_;
+/** The multipliers of the rational program: y / (g scale) row by row. */
+VectorXq Tableau::Direction(const Integers& y, const Rational& scale) const {
+  VectorXq result(basis_.size());
+  for (int i = 0; i < basis_.size(); ++i) {
+    result[i] = Quotient(y[i], program_.row_divisor[i]) / scale;
+  }
+  return result;
+}
+
+void Tableau::ReportPoint(const LinearProgram& rational, ProgramSolution* solution) const {
   solution->x.assign(program_.columns.size(), 0);
-  for (Eigen::Index i = 0; i < m_; ++i) {
-    if (basis_[i] == kArtificial) continue;
-    solution->x[basis_[i]] = x_[i];
-    solution->value += program_.c[basis_[i]] * x_[i];
-    solution->basis.push_back(basis_[i]);
+  for (int i = 0; i < basis_.size(); ++i) {
+    const int j = columns_[i];
+    if (j == kArtificial) continue;
+    solution->x[j] =
+        Quotient(basis_.x(i), basis_.d()) * program_.column_scale[j] / program_.b_scale;
+    solution->value += rational.c[j] * solution->x[j];
+    solution->basis.push_back(j);
   }
 }
 
-ProgramSolution Tableau::Solve() {
+void Tableau::ReportRay(int unlimited, ProgramSolution* solution) const {
+  solution->ray.assign(program_.columns.size(), 0);
+  const Integers alpha = basis_.Transformed(program_.columns[unlimited]);
+  for (int i = 0; i < basis_.size(); ++i) {
+    const int j = columns_[i];
+    if (j == kArtificial) continue;
+    solution->ray[j] = Quotient(-alpha[i], basis_.d()) * program_.column_scale[j] /
+                       program_.column_scale[unlimited];
+  }
+  solution->ray[unlimited] = 1;
+}
+
+ProgramSolution Tableau::Solve(const LinearProgram& rational) {
   ProgramSolution solution;
   int unlimited = -1;
   while (Iterate(true, &unlimited)) {
   }
-  for (Eigen::Index i = 0; i < m_; ++i) {
-    if (basis_[i] != kArtificial || x_[i] == 0) continue;
-    solution.y = -Multipliers(true);  // -y.a <= 0 for all a, and the sum of the rest is y.b > 0
-    solution.pivots = pivots_;
+  solution.pivots = pivots_;
+  for (int i = 0; i < basis_.size(); ++i) {
+    if (columns_[i] != kArtificial || basis_.x(i) == 0) continue;
+    // -y.a <= 0 for all a, and the sum of the rest is -y.b > 0; d > 0 scales both.
+    solution.y = Direction(Multipliers(true), -1);
     return solution;
   }
   degenerate_ = 0;
   while (Iterate(false, &unlimited)) {
   }
-  Report(&solution);
+  solution.pivots = pivots_;
+  ReportPoint(rational, &solution);
   if (unlimited < 0) {
     solution.status = ProgramStatus::kOptimal;
-    solution.y = Multipliers(false);
+    solution.y = Direction(Multipliers(false), basis_.d() * program_.c_scale);
     return solution;
   }
   solution.status = ProgramStatus::kUnbounded;
   solution.value = 0;
-  solution.ray.assign(program_.columns.size(), 0);
-  const VectorXq alpha = Transformed(unlimited);
-  for (Eigen::Index i = 0; i < m_; ++i) {
-    if (basis_[i] != kArtificial) solution.ray[basis_[i]] = -alpha[i];
-  }
-  solution.ray[unlimited] = 1;
+  ReportRay(unlimited, &solution);
   return solution;
 }
 
@@ -215,9 +235,10 @@ ProgramSolution SolveLinearProgram(const LinearProgram& program, std::span<const
   for (const VectorXq& a : program.columns) {
     Require(a.size() == program.b.size(), "every column must have the size of the right-hand side");
   }
-  Tableau tableau(program);
-  if (!start.empty() && tableau.TryStart(start)) return tableau.Solve();
-  return Tableau(program).Solve();
+  const IntegerProgram integers(program);
+  Tableau tableau(integers);
+  if (!start.empty() && tableau.TryStart(start)) return tableau.Solve(program);
+  return Tableau(integers).Solve(program);
 }
 
 bool CheckProgramSolution(const LinearProgram& program, const ProgramSolution& solution) {

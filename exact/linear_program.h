@@ -32,9 +32,10 @@ struct ProgramSolution {
   int pivots = 0;
 };
 
-/** Solves the program by the revised simplex method with a dense inverse of the basis; columns
- enter by the largest price, and by Bland's rule [1977] after a run of degenerate pivots, until one
- moves: so it ends on every input.
+/** Solves the program by the revised simplex method on integers: columns and rows are scaled to
+ integers, and the basis is kept as its adjugate over one common denominator, on which a pivot
+ divides exactly [Edmonds 1967; Bareiss 1968]. Columns enter by the largest price per size, and by
+ Bland's rule [1977] after a run of degenerate pivots, until one moves: so it ends on every input.
  @param start columns of a basis to start from, for example one that a float code found; used if it
  is regular and its weights are >= 0, else ignored. Fewer columns than equations may do: the rest is
  left to the first phase.

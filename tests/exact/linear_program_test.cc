@@ -70,9 +70,9 @@ TEST_CASE("Random programs of all kinds carry proofs, whatever basis they start 
     if (solution.status == ProgramStatus::kOptimal) {
       started += round % 2 == 0 && !solution.basis.empty();
     }
-    // Feasible iff the right-hand side is in the cone of the columns.
+    // Feasible iff the right-hand side is in the cone of the columns, says another solver.
     const bool member =
-        DecideConeMembership(program.columns, program.b).where != Membership::kOutside;
+        DecideConeMembershipByQp(program.columns, program.b).where != Membership::kOutside;
     CHECK(member == (solution.status != ProgramStatus::kInfeasible));
   }
   for (const int n : count) CHECK(n > 100);
