@@ -211,9 +211,10 @@ bool SurvivesErrors(const EquilibriumQuery& query, const std::vector<ContactForc
 
 }  // namespace
 
-StabilityResult DecideStability(const EquilibriumQuery& query) {
+StabilityResult DecideStability(const EquilibriumQuery& query, const DecideOptions& options) {
   Require(query.mass > 0, "the mass must be positive");
   Require(!IsZero(query.gravity), "gravity must not vanish");
+  Require(options.max_sides >= 4 && options.max_sides <= 64, "pyramids have 4 to 64 sides");
   Require(query.com_error >= 0, "an error bound must not be negative");
   for (const ExactContact& contact : query.contacts) {
     Require(contact.error_p >= 0, "an error bound must not be negative");
@@ -222,7 +223,7 @@ StabilityResult DecideStability(const EquilibriumQuery& query) {
   const VectorXq v = DemandedWrench(query);
   StabilityResult result;
   result.rank = WrenchRank(query);
-  for (int sides = 4; sides <= 64; sides *= 2) {
+  for (int sides = 4; sides <= options.max_sides; sides *= 2) {
     result.sides = sides;
     if (Refine(query, v, &result)) break;
   }

@@ -55,16 +55,22 @@ struct StabilityResult {
   Vector6q separator = Vector6q::Zero();
 };
 
+struct DecideOptions {
+  /** The finest pyramids tried, 4 to 64: coarser ones decide as surely, but decide less. */
+  int max_sides = 64;
+};
+
 /** Decides the static stability of contacts against the revolution cones (DESIGN part 2), for every
  truth that the stated errors allow; with errors of zero, for the contacts as given.
 
- With inscribed pyramids of 4, 8, 16, 32, 64 sides an interior wrench is interior to the true cone;
- with circumscribed ones a wrench outside is outside. The wrenches (u, (p - com) x u) are formed
- exactly, so coplanar contacts stay coplanar. Only certain contacts support, and all that may be
- active are refuted. kBoundary and kRank speak of the data as given.
- @throws Error unless mass > 0, gravity != 0, all normals are non-zero, and mu and errors >= 0.
+ With inscribed pyramids of 4, 8, 16, 32, 64 sides (up to max_sides) an interior wrench is interior
+ to the true cone; with circumscribed ones a wrench outside is outside. The wrenches (u, (p - com) x
+ u) are formed exactly, so coplanar contacts stay coplanar. Only certain contacts support, and all
+ that may be active are refuted. kBoundary and kRank speak of the data as given.
+ @throws Error unless mass > 0, gravity != 0, all normals are non-zero, mu and errors >= 0, and
+ max_sides is in its range.
  @post CheckInteriorForces or CheckSeparatingWrench, whichever the verdict names. */
-StabilityResult DecideStability(const EquilibriumQuery& query);
+StabilityResult DecideStability(const EquilibriumQuery& query, const DecideOptions& options = {});
 
 /** Whether the forces are admissible and balance gravity exactly, for the data as given. */
 bool CheckForces(const EquilibriumQuery& query, const std::vector<ContactForce>& forces);

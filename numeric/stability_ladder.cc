@@ -82,6 +82,13 @@ void SetSeparator(const exact::StabilityResult& result, SeparatingWrench* separa
   }
 }
 
+/** A proved tie of data without error. */
+bool IsBoundary(const LadderedStability& ladder) {
+  using Reason = exact::StabilityReason;
+  return ladder.width == 0 && ladder.exact &&
+         (ladder.exact->reason == Reason::kBoundary || ladder.exact->reason == Reason::kRank);
+}
+
 /** No finer placement can change an undecided answer about data without error. */
 bool IsFinal(const LadderedStability& ladder) {
   return ladder.answer.verdict != Verdict::kUndecided || ladder.width == 0;
@@ -107,14 +114,14 @@ StabilityLadder::StabilityLadder(const World& world) : world_(&world) {
   if (world.model().contact.model == ContactModel::kSites) scene_.emplace(world.model());
 }
 
-LadderedStability StabilityLadder::DecideAt(const Configuration& q, int bits) const {
+LadderedStability StabilityLadder::DecideAt(const Configuration& q, int bits, int max_sides) const {
   Require(scene_.has_value(), "nearest-pair contacts have no exact twin");
   const Model& model = world_->model();
   const exact::RobotPlacement placement = exact::PlaceRobot(model.robot, q, bits);
   // Roots a little finer than the placement: their errors do not matter beside its own.
   const auto found = exact::FindContacts(*scene_, placement, {bits + 64});
   const exact::EquilibriumQuery query = exact::ContactEquilibrium(*scene_, placement, found);
-  exact::StabilityResult decided = exact::DecideStability(query);
+  exact::StabilityResult decided = exact::DecideStability(query, {max_sides});
   LadderedStability result;
   for (const exact::FoundContact& contact : found) {
     result.contacts.push_back(Rounded(contact, model));
@@ -135,11 +142,23 @@ LadderedStability StabilityLadder::DecideAt(const Configuration& q, int bits) co
 LadderedStability StabilityLadder::Decide(const Configuration& q, GuideWorkspace* workspace) const {
   FindContacts(*world_, &workspace->geometry, &workspace->contacts);
   const StabilityQuery query = PlacedQuery(*world_, *workspace);
-  LadderedStability result = FromStored(Stability(query, &workspace->stability), query);
-  if (IsFinal(result) || !scene_) return result;
-  for (const int bits : {106, 256}) {
-    result = DecideAt(q, bits);
-    if (IsFinal(result)) break;
+  // Stored contacts with errors are worth no exact decision where better ones can be had.
+  if (scene_ && WidthOf(query) > 0) {
+    SettledStability fast;
+    fast.answer = TryStability(query, &workspace->stability);
+    if (fast.answer.verdict != Verdict::kUndecided) {
+      fast.stage = StabilityStage::kFast;
+      return FromStored(std::move(fast), query);
+    }
+  } else {
+    LadderedStability result = FromStored(Stability(query, &workspace->stability), query);
+    if (IsFinal(result) || !scene_) return result;
+  }
+  // What is left is mostly near the edge of the support, which the coarsest pyramids see as well as
+  // any: the finest are kept for the last rung.
+  LadderedStability result = DecideAt(q, 106, 8);
+  if (result.answer.verdict == Verdict::kUndecided && !IsBoundary(result)) {
+    result = DecideAt(q, 256, 64);
   }
   return result;
 }

@@ -12,9 +12,10 @@ namespace cguide::numeric {
 /** The rungs that a question about the stability of a configuration climbs. */
 enum class StabilityRung {
   kFast,     ///< FindContacts and TryStability: doubles with a proven bound
-  kStored,   ///< exact::DecideStability on the stored contacts, its proof carrying their errors
-  kBits106,  ///< exact contacts of the MPFR placement of 106 bits
-  kBits256,  ///< likewise of 256 bits
+  kStored,   ///< exact::DecideStability on the stored contacts, where they have no errors, or no
+             ///< MPFR rung can follow and its proof carries their errors
+  kBits106,  ///< exact contacts of the MPFR placement of 106 bits, pyramids of 4 and 8 sides
+  kBits256,  ///< likewise of 256 bits, pyramids of up to 64 sides
   kUndecided
 };
 
@@ -52,12 +53,12 @@ class StabilityLadder {
    kHolds, kFails: for the real numbers that the doubles of q stand for (DESIGN part 2). kUndecided:
    the reason names the boundary and its rank where contacts and CoM are known exactly, and
    otherwise how well they are known at the last rung. Under ContactModel::kNearest only the first
-   two rungs exist. Costs: microseconds, then milliseconds, then tens to hundreds of
-   milliseconds. */
+   two rungs exist. The MPFR rungs take tens of milliseconds, and seconds where they stay
+   undecided. */
   LadderedStability Decide(const Configuration& q, GuideWorkspace* workspace) const;
 
   /** One MPFR rung alone. @throws Error under ContactModel::kNearest. */
-  LadderedStability DecideAt(const Configuration& q, int bits) const;
+  LadderedStability DecideAt(const Configuration& q, int bits, int max_sides = 64) const;
 
  private:
   const World* world_;
