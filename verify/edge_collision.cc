@@ -238,7 +238,9 @@ bool Decider::Holds(Item* item) {
     case PieceKind::kHalfspace:
       return HoldsHalfspace(a, piece, skin);
     case PieceKind::kMesh:
-      return HoldsMesh(a, *piece.mesh, skin);
+      // With a skin a shape thinner than it could pass through the triangles of a solid unseen, and
+      // its side would no longer be that at s = 0: solids are kept strictly apart.
+      return HoldsMesh(a, *piece.mesh, piece.mesh->solid ? 0 : skin);
     case PieceKind::kConvex:
       break;
   }

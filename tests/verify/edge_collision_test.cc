@@ -240,6 +240,18 @@ TEST_CASE("Numbers beyond the range of doubles prove nothing") {
   }
 }
 
+TEST_CASE("A shape thinner than the skin does not slip into a solid") {
+  Model model = test::OneBodyModel({{{}, Box{{2e-4, 2e-4, 2e-4}}}}, {});
+  model.objects.push_back(test::OneObject("solid", test::BoxMesh({0, -1, -1}, {1, 1, 1})));
+  model.contact.skin = 0.001;
+  model.contact.may_touch = {{0, 0}};
+  const World world(model);
+  EdgeWorkspace workspace(world);
+  const Edge edge{test::At({-0.5, 0.1, 0.2}), test::At({0.5, 0.1, 0.2})};
+  REQUIRE(DecideEdgeCollision(world, edge, {.max_leaves = 500}, &workspace).verdict !=
+          Verdict::kHolds);
+}
+
 TEST_CASE("Edges that do not fit the robot are refused") {
   const Model model = Pendulum(0.1);
   const World world(model);
