@@ -37,12 +37,13 @@ struct Task {
 }  // namespace
 
 struct EdgeWorkspace::Scratch {
-  explicit Scratch(const World& world) : point(world) {}
+  explicit Scratch(const World& world) : point(world), numbers(CertificateShapes(world)) {}
   numeric::Workspace point;
   TaylorState<kDegree> state;
   std::vector<MovingShape> shapes;
   std::vector<long> stamp;  ///< leaf for which a shape was moved last
   std::deque<Task> tasks;
+  std::vector<int> numbers;  ///< of shapes in certificates
   numeric::StageCounts counts;
 };
 
@@ -94,6 +95,8 @@ class Decider {
   bool HoldsHalfspace(const MovingShape& a, const ObstaclePiece& piece, double skin);
   bool Above(const MovingShape& a, double offset, double skin, const Vector3d& n);
   bool Between(const MovingShape& a, const MovingShape& b, const Vector3d& n);
+  void NoteSides();
+  void Note(const Item& item);
 
   const Item* FindMeeting(const std::vector<Item>& items, double s);
   bool Meets(const Item& item);
@@ -105,6 +108,8 @@ class Decider {
   const EdgeCollisionOptions& options_;
   EdgeWorkspace::Scratch& x_;
   EdgeCollision result_;
+  Leaf leaf_;                         ///< at hand
+  std::vector<check::Plane> planes_;  ///< that settled the item at hand; empty: its boxes did
 };
 
 std::vector<Item> Decider::AllItems() const {
@@ -145,6 +150,10 @@ bool Decider::Above(const MovingShape& a, double offset, double skin, const Vect
   const double lowest = LowestOver(a, {n, offset, 0});
   if (!(lowest > -skin * (1 - 16 * kUnit))) return false;
   ++result_.planes;
+  // Half way between the two where rounding allows, so that as much of the obstacle as possible
+  // lies behind.
+  const bool wide = lowest > 0x1p-40 * (1 + std::abs(offset));
+  planes_.push_back({n, wide ? offset + 0.5 * lowest : offset, 0});
   return true;
 }
 
@@ -156,6 +165,7 @@ bool Decider::Between(const MovingShape& a, const MovingShape& b, const Vector3d
   const MovingPlane plane{n, 0.5 * (low.c[0] - high.c[0]) + radii, 0.5 * (low.c[1] - high.c[1])};
   if (!(LowestOver(a, plane) > 0 && HighestOver(b, plane) < 0)) return false;
   ++result_.planes;
+  planes_.push_back({n, plane.m0, plane.m1});
   return true;
 }
 
@@ -197,7 +207,8 @@ bool Decider::HoldsHalfspace(const MovingShape& a, const ObstaclePiece& piece, d
   return Above(a, piece.offset + numeric::HalfspaceError(piece, reach), skin, piece.normal);
 }
 
-// Triangles whose box the shape's box does not meet cannot touch it.
+// Triangles whose box the shape's box does not meet cannot touch it, nor can those behind a plane
+// that served for another one.
 bool Decider::HoldsMesh(const MovingShape& a, const numeric::Mesh& mesh, double skin) {
   if (mesh.nodes.empty()) return true;
   const Vector3d margin = Vector3d::Constant(mesh.error);
@@ -214,6 +225,10 @@ bool Decider::HoldsMesh(const MovingShape& a, const numeric::Mesh& mesh, double 
     for (int i = 0; i < node.count; ++i) {
       std::array<Vector3d, 3> corners;
       const Convex triangle = numeric::TriangleConvex(mesh, mesh.order[node.first + i], &corners);
+      const bool behind = std::any_of(
+          planes_.begin(), planes_.end(),
+          [&](const check::Plane& plane) { return HighestStatic(triangle, plane.n) <= plane.m0; });
+      if (behind) continue;
       Item none;
       const Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
       if (normal.norm() > 0) {
@@ -227,6 +242,7 @@ bool Decider::HoldsMesh(const MovingShape& a, const numeric::Mesh& mesh, double 
 }
 
 bool Decider::Holds(Item* item) {
+  planes_.clear();
   const MovingShape& a = Shape(item->shape);
   if (item->self) {
     const MovingShape& b = Shape(item->other);
@@ -290,7 +306,41 @@ bool Decider::Meets(const Item& item) {
   return DecideConvex(a, piece.convex, skin, &hint, &x_.counts) == Verdict::kFails;
 }
 
+// Halfspaces are their own planes, and the checker looks at boxes by itself.
+void Decider::Note(const Item& item) {
+  const bool halfspace = !item.self && g_.pieces[item.other].kind == PieceKind::kHalfspace;
+  if (!options_.evidence || planes_.empty() || halfspace) return;
+  check::Node& node = options_.evidence->nodes[leaf_];
+  const int shape = x_.numbers[item.shape];
+  if (item.self) {
+    node.self_apart.push_back({shape, x_.numbers[item.other], planes_});
+  } else {
+    node.apart.push_back({shape, item.other, planes_});
+  }
+}
+
+// Where a shape may be inside the box of a solid at the start, a ray shows that it is outside of
+// it.
+void Decider::NoteSides() {
+  if (!options_.evidence) return;
+  EvaluateEdge<kDegree>(world_.tree(), edge_, {0, 0}, &x_.state);
+  for (int p = 0; p < static_cast<int>(g_.pieces.size()); ++p) {
+    const ObstaclePiece& piece = g_.pieces[p];
+    if (piece.kind != PieceKind::kMesh || !piece.mesh->solid || piece.mesh->nodes.empty()) continue;
+    const numeric::MeshNode& node = piece.mesh->nodes[0];
+    const Vector3d margin = Vector3d::Constant(1e-6);  // generous: a ray too many does no harm
+    for (int s = 0; s < static_cast<int>(g_.shapes.size()); ++s) {
+      const MovingShape shape = Move(g_.shapes[s], x_.state.X_WB[g_.shapes[s].body]);
+      if (BoxesApart(shape.lower, shape.upper, node.lower - margin, node.upper + margin)) continue;
+      for (const check::OutsideRay& ray : OutsideRays(x_.numbers[s], p)) {
+        options_.evidence->outside.push_back(ray);
+      }
+    }
+  }
+}
+
 void Decider::Split(const Leaf& leaf, std::vector<Item> items) {
+  if (options_.evidence) options_.evidence->splits.insert(leaf);
   const double half = 0.5 * leaf.half;
   x_.tasks.push_back({{leaf.middle - half, half}, items});
   x_.tasks.push_back({{leaf.middle + half, half}, std::move(items)});
@@ -307,6 +357,7 @@ EdgeCollision Decider::Run() {
   }
   x_.shapes.resize(g_.shapes.size());
   x_.stamp.assign(g_.shapes.size(), -1);
+  NoteSides();
   // Wide leaves first: their middles find a deep meeting before narrow ones close in on the instant
   // at which it begins, where nothing is certain.
   x_.tasks.clear();
@@ -317,8 +368,13 @@ EdgeCollision Decider::Run() {
     ++result_.leaves;
     EvaluateEdge<kDegree>(world_.tree(), edge_, task.leaf, &x_.state);
     std::vector<Item> open;
+    leaf_ = task.leaf;
     for (Item& item : task.items) {
-      if (!Holds(&item)) open.push_back(item);
+      if (Holds(&item)) {
+        Note(item);
+      } else {
+        open.push_back(item);
+      }
     }
     if (open.empty()) continue;
     if (const Item* meeting = FindMeeting(open, task.leaf.middle)) {

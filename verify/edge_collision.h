@@ -5,7 +5,7 @@
 
 #include "cguide/exact/core/path.h"
 #include "cguide/numeric/world.h"
-#include "cguide/verify/edge_kinematics.h"
+#include "cguide/verify/edge_evidence.h"
 
 namespace cguide::verify {
 
@@ -13,7 +13,8 @@ struct EdgeCollisionOptions {
   /** Leaves are halved down to this length of s, a power of two >= 2^-40; then the verdict is
    kUndecided. */
   double shortest = 0x1p-30;
-  long max_leaves = 20000;  ///< likewise
+  long max_leaves = 20000;           ///< likewise
+  EdgeEvidence* evidence = nullptr;  ///< takes the planes of a proof, where given
 };
 
 /** What became of the question whether a whole edge stays in C_free. */

@@ -97,6 +97,9 @@ void CorrectWeights(const Matrix6d& R, const Vector3d& v_f, LeafBalance* balance
   }
 }
 
+/** The greater of two bounds; NaN, which bounds nothing, stays. */
+double Greater(double a, double b) { return a > b ? a : (b >= a ? b : NAN); }
+
 /** The two inequalities of DecideEdgeStability. NaN fails every comparison. */
 bool ProveBalance(const Matrix6d& R, const Vector3d& v_f, const LeafBalance& balance) {
   double least = INFINITY;
@@ -115,9 +118,8 @@ bool ProveBalance(const Matrix6d& R, const Vector3d& v_f, const LeafBalance& bal
       if (j == a) entry = Constant<kDegree>(1.0) + entry;
       row += Size(entry);
     }
-    if (!(row <= kappa)) kappa = row;
-    const double size = Size(RowTimes(R, a, residual));
-    if (!(size <= moved)) moved = size;
+    kappa = Greater(kappa, row);
+    moved = Greater(moved, Size(RowTimes(R, a, residual)));
   }
   kappa *= kUp;
   return kappa < 1 && moved * kUp < (1 - kappa) * least * (1 - 0x1p-45);
@@ -137,12 +139,14 @@ class Decider {
   void KeepContacts(const Leaf& leaf);
   bool HoldsOver(const Leaf& leaf);
   bool Balances(const numeric::ForceWitness& forces);
+  void Note(const numeric::ForceWitness& forces, const LeafBalance& balance);
 
   const World& world_;
   const Edge& edge_;
   const EdgeStabilityOptions& options_;
   StabilityEdgeWorkspace::Scratch& x_;
   EdgeStability result_;
+  Leaf leaf_;  ///< at hand
 };
 
 // The real placement at s, which in general is that of no double configuration: the middle of
@@ -221,13 +225,36 @@ bool Decider::Balances(const numeric::ForceWitness& forces) {
   // The real mass is that of the model; its rounding in `tree` scales all weights alike, and being
   // interior does not depend on the scale of v.
   CorrectWeights(R, v_f, &balance);
-  return ProveBalance(R, v_f, balance);
+  if (!ProveBalance(R, v_f, balance)) return false;
+  Note(forces, balance);
+  return true;
+}
+
+// Only contacts that bear a force are written.
+void Decider::Note(const numeric::ForceWitness& forces, const LeafBalance& balance) {
+  if (!options_.evidence) return;
+  check::Balance& noted = options_.evidence->nodes[leaf_].balance.emplace();
+  std::vector<int> number(x_.kept.size(), -1);
+  for (int j = 0; j < forces.size; ++j) {
+    const numeric::WitnessForce& force = forces.force[j];
+    if (number[force.contact] < 0) {
+      number[force.contact] = static_cast<int>(noted.contacts.size());
+      noted.contacts.push_back(x_.kept[force.contact].evidence);
+    }
+    noted.forces.push_back(
+        {number[force.contact], force.u_W, balance.weight[j].c[0], balance.weight[j].c[1]});
+  }
 }
 
 bool Decider::HoldsOver(const Leaf& leaf) {
   KeepContacts(leaf);
   if (x_.kept.empty()) return false;
-  if (world_.model().require == GuideRequirement::kContact) return true;
+  if (world_.model().require == GuideRequirement::kContact) {
+    if (options_.evidence) {
+      options_.evidence->nodes[leaf_].balance = check::Balance{{x_.kept.front().evidence}, {}};
+    }
+    return true;
+  }
   numeric::StabilityQuery query = PlacedQuery(world_, x_.guide);
   query.contacts = x_.usable;
   const numeric::StabilityAnswer answer = TryStability(query, &x_.guide.stability);
@@ -244,6 +271,7 @@ EdgeStability Decider::Run() {
   while (!x_.leaves.empty()) {
     const Leaf leaf = x_.leaves.front();
     x_.leaves.pop_front();
+    leaf_ = leaf;
     ++result_.leaves;
     const Verdict middle = TestMiddle(leaf);
     if (middle == Verdict::kFails) {
@@ -262,6 +290,7 @@ EdgeStability Decider::Run() {
                                                  : "the middle of the leaf is not decided";
       return result_;
     }
+    if (options_.evidence) options_.evidence->splits.insert(leaf);
     const double half = 0.5 * leaf.half;
     x_.leaves.push_back({leaf.middle - half, half});
     x_.leaves.push_back({leaf.middle + half, half});

@@ -5,12 +5,14 @@
 
 #include "cguide/exact/core/path.h"
 #include "cguide/numeric/world.h"
+#include "cguide/verify/edge_evidence.h"
 
 namespace cguide::verify {
 
 struct EdgeStabilityOptions {
   double shortest = 0x1p-30;  ///< as in EdgeCollisionOptions
   long max_leaves = 4000;
+  EdgeEvidence* evidence = nullptr;  ///< takes contacts and forces of a proof, where given
 };
 
 /** What became of the question whether contact and static stability last over a whole edge. */

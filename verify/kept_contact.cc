@@ -119,6 +119,18 @@ bool FartherThan(const ObstaclePiece& piece, const Vector3d& lower, const Vector
   return numeric::BallApart(center, radius, piece);
 }
 
+/** The core's point below y, in the piece's frame. */
+check::NearEvidence NearEvidenceOf(const Convex& s, const numeric::PointProjection& here) {
+  const Vector3d core = here.y - s.radius * here.n;
+  Vector3d y_P = s.R.transpose() * (core - s.c);
+  y_P = y_P.cwiseMax(-s.half).cwiseMin(s.half);
+  const double across = y_P.head<2>().norm();
+  if (s.kind == numeric::CoreKind::kCylinder && across > s.half[0] * (1 - 4 * kUnit)) {
+    y_P.head<2>() *= s.half[0] / across * (1 - 8 * kUnit);
+  }
+  return {y_P, {}};
+}
+
 }  // namespace
 
 ContactKeeper::ContactKeeper(const numeric::World& world)
@@ -188,7 +200,19 @@ void ContactKeeper::SetForcePoint(const MovingSite& site, KeptContact* kept) con
   kept->force_point.r.head<3>() += site.radius * (kept->normal_error + 4 * kUnit);
 }
 
-bool ContactKeeper::KeepOnFlat(const MovingSite& site, const Flat& flat, KeptContact* kept) {
+// Where the boxes alone do not show it, the plane across the way from the piece's closest point.
+void ContactKeeper::NoteAway(int piece, const Vector3d& y, double radius, KeptContact* kept) const {
+  const ObstaclePiece& other = world_.geometry().pieces[piece];
+  if (other.kind != PieceKind::kConvex) return;
+  const Convex& s = other.convex;
+  const Vector3d reach = s.R.cwiseAbs() * s.half + Vector3d::Constant(s.radius + 2 * radius + 1e-6);
+  if (((y - s.c).cwiseAbs().array() > reach.array()).any()) return;
+  const numeric::PointProjection there = numeric::ProjectPoint(s, y);
+  kept->evidence.apart.push_back({-1, piece, {{there.n, 0, 0}}});
+}
+
+bool ContactKeeper::KeepOnFlat(const MovingSite& site, const numeric::Contact& contact,
+                               const Flat& flat, KeptContact* kept) {
   const Geometry& g = world_.geometry();
   const ContactRules& rules = world_.model().contact;
   const ObstaclePiece& piece = g.pieces[flat.piece];
@@ -202,8 +226,13 @@ bool ContactKeeper::KeepOnFlat(const MovingSite& site, const Flat& flat, KeptCon
   kept->friction = world_.model().objects[piece.object].friction;
   // y(t) is within the largest |d| of x(t).
   const double reach = std::max(std::abs(lowest), std::abs(highest)) + rules.seam + plane.error;
+  kept->evidence = {contact.site, flat.piece, check::FlatEvidence{flat.face, {}, 1}, {}, {}};
   for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
-    if (p == flat.piece || FartherThan(g.pieces[p], site.lower, site.upper, reach)) continue;
+    if (p == flat.piece) continue;
+    if (FartherThan(g.pieces[p], site.lower, site.upper, reach)) {
+      NoteAway(p, 0.5 * (site.lower + site.upper), reach + (site.upper - site.lower).norm(), kept);
+      continue;
+    }
     if (!LiesBehind(flat, p)) return false;
     kept->friction = std::min(kept->friction, world_.model().objects[g.pieces[p].object].friction);
   }
@@ -226,9 +255,13 @@ bool ContactKeeper::KeepOnConvex(const MovingSite& site, const numeric::Contact&
   if (!(lowest > site.radius && lowest > 0 && highest < site.radius + rules.epsilon)) return false;
   kept->friction = world_.model().objects[piece.object].friction;
   const double ball = (rules.seam + error) * kUp + 8 * kUnit * contact.x_W.lpNorm<1>();
+  kept->evidence = {contact.site, index, {}, NearEvidenceOf(piece.convex, here), {}};
   for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
     const ObstaclePiece& other = g.pieces[p];
-    if (p == index || numeric::BallApart(here.y, ball, other)) continue;
+    if (p == index) continue;
+    const bool away = numeric::BallApart(here.y, ball, other);
+    NoteAway(p, away ? here.y : contact.x_W, away ? ball : highest + site.step, kept);
+    if (away) continue;
     double distance = -INFINITY;
     if (other.kind == PieceKind::kConvex) {
       const numeric::PointProjection there = at(other.convex);
@@ -263,7 +296,7 @@ bool ContactKeeper::Keep(const TaylorState<kDegree>& state, const numeric::Conta
   const Vector3d away = (site.upper - contact.x_W).cwiseMax(contact.x_W - site.lower).cwiseMax(0.0);
   site.step = away.norm() * kUp + 8 * kUnit * contact.x_W.lpNorm<1>();
   Flat flat;
-  if (FindFlat(contact, &flat) && KeepOnFlat(site, flat, kept)) return true;
+  if (FindFlat(contact, &flat) && KeepOnFlat(site, contact, flat, kept)) return true;
   const int piece = FindConvex(contact);
   return piece >= 0 && KeepOnConvex(site, contact, piece, kept);
 }

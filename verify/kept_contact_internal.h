@@ -7,6 +7,7 @@
 #include "cguide/exact/body_distance.h"
 #include "cguide/numeric/contact.h"
 #include "cguide/numeric/world.h"
+#include "cguide/verify/check/certificate.h"
 #include "cguide/verify/moving_shape_internal.h"
 
 namespace cguide::verify {
@@ -26,6 +27,7 @@ struct KeptContact {
   double normal_error = 0;  ///< bound on |n_W - the real normal| for every t
   double friction = 0;
   Vector2 force_point;  ///< x - r n, in W
+  check::ContactEvidence evidence;
 };
 
 /** Finds which contacts of one instant stay over a leaf. One per thread; it remembers which pieces
@@ -54,7 +56,8 @@ class ContactKeeper {
    piece keeps farther than the seam from y, or lies behind the plane: a point z with n.z <= h has
    |z - x| >= d = |y - x|. Inside the obstacle by less than the skin, the flat is the nearest way
    out where y is farther than that from its rim. */
-  bool KeepOnFlat(const MovingSite& site, const Flat& flat, KeptContact* kept);
+  bool KeepOnFlat(const MovingSite& site, const numeric::Contact& contact, const Flat& flat,
+                  KeptContact* kept);
 
   /** L: y(t) is the point of a convex piece nearest to x(t), w = x - y. Both maps x -> y and x -> w
    are 1-Lipschitz [Moreau 1965], so within |x(t) - x(0)| <= step the distance stays within `step`
@@ -68,6 +71,7 @@ class ContactKeeper {
   bool InFace(const numeric::ObstaclePiece& piece, int face, const Vector2& x, double margin) const;
   bool LiesBehind(const Flat& flat, int piece);
   void SetForcePoint(const MovingSite& site, KeptContact* kept) const;
+  void NoteAway(int piece, const Eigen::Vector3d& y, double radius, KeptContact* kept) const;
 
   const numeric::World& world_;
   exact::PreparedModel exact_;

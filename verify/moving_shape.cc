@@ -43,7 +43,7 @@ Model2 Vertex(const Projected& p, const Vector3d& v) {
 }
 
 /** The smaller of two bounds; NaN, which bounds nothing, counts as the smallest. */
-double Least(double a, double b) { return b >= a ? a : b; }
+double Least(double a, double b) { return a < b ? a : (b <= a ? b : NAN); }
 
 Vector3d Corner(const Vector3d& half, int i) {
   return {i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], i & 4 ? half[2] : -half[2]};

@@ -5,17 +5,9 @@
 #include <vector>
 
 #include "cguide/exact/core/path.h"
-#include "cguide/verify/edge_collision.h"
-#include "cguide/verify/edge_stability.h"
+#include "cguide/verify/edge_audit.h"
 
 namespace cguide::verify {
-
-/** What was decided of one whole edge. */
-struct EdgeFinding {
-  bool done = false;  ///< false where the audit was interrupted before
-  EdgeCollision collision;
-  EdgeStability stability;  ///< not asked, kUndecided, where the edge collides
-};
 
 struct WholeAuditOptions {
   const std::atomic<bool>* interrupt = nullptr;
@@ -23,8 +15,8 @@ struct WholeAuditOptions {
 };
 
 /** Whether every real configuration of a path, not samples of it, is in C_guide: joint limits
- (which hold on an edge iff they hold at its ends), collisions, contact and balance. Decided in
- doubles with derived bounds; there is no certificate that another program could re-check. */
+ (which hold on an edge iff they hold at its ends), collisions, contact and balance. An edge holds
+ where the checker has accepted its proof; a refutation rests on doubles with derived bounds. */
 struct WholeAudit {
   Verdict verdict = Verdict::kHolds;
   std::vector<int> beyond_limits;  ///< waypoints

@@ -14,26 +14,23 @@ using numeric::Short;
 const char* Name(Verdict verdict) {
   switch (verdict) {
     case Verdict::kHolds:
-      return "holds";
+      return "proved";
     case Verdict::kFails:
-      return "fails";
+      return "refuted";
     case Verdict::kUndecided:
       break;
   }
   return "undecided";
 }
 
+/** What the certifier found of one obligation; proved is what the checker accepts of the edge. */
+const char* Found(Verdict verdict) {
+  return verdict == Verdict::kHolds ? "holds" : verdict == Verdict::kFails ? "fails" : "undecided";
+}
+
 struct Totals {
   int hold = 0, fail = 0, open = 0;
 };
-
-Verdict VerdictOf(const EdgeFinding& edge) {
-  if (edge.collision.verdict == Verdict::kFails || edge.stability.verdict == Verdict::kFails) {
-    return Verdict::kFails;
-  }
-  return edge.collision.verdict == Verdict::kHolds ? edge.stability.verdict
-                                                   : edge.collision.verdict;
-}
 
 Totals Count(const WholeAudit& audit) {
   Totals totals;
@@ -62,6 +59,7 @@ std::string Describe(const Model& model, const EdgeFinding& edge) {
     return "undecided: " + numeric::DescribePair(model, c.pair) +
            " cannot be told apart or colliding about s = " + Short(c.s);
   }
+  if (!edge.refusal.empty()) return "undecided: the checker refuses the proof: " + edge.refusal;
   return "undecided: about s = " + Short(edge.stability.s) + " " + edge.stability.reason;
 }
 
@@ -72,12 +70,12 @@ std::string WriteWholeText(const AuditSubject& subject, const Model& model,
   const Totals totals = Count(audit);
   std::ostringstream text;
   text << subject.path_file << ": " << totals.hold << " of " << audit.edges.size()
-       << " edges hold for every s";
-  if (totals.fail > 0) text << ", " << totals.fail << " fail";
+       << " edges proved for every s";
+  if (totals.fail > 0) text << ", " << totals.fail << " refuted";
   if (totals.open > 0) text << ", " << totals.open << " undecided";
   const int left = static_cast<int>(audit.edges.size()) - audit.edges_done;
   if (left > 0) text << ", " << left << " not reached";
-  text << "; edges: whole, without a certificate\n";
+  text << '\n';
   for (const int i : audit.beyond_limits) {
     text << "  waypoint " << i << "  a joint is beyond its limits\n";
   }
@@ -110,10 +108,10 @@ std::string WriteWholeJson(const AuditSubject& subject, const Model& model,
     entry["done"] = edge.done;
     if (edge.done) {
       entry["verdict"] = Name(VerdictOf(edge));
-      entry["collision"] = Name(edge.collision.verdict);
+      entry["collision"] = Found(edge.collision.verdict);
       entry["collision_leaves"] = edge.collision.leaves;
       if (edge.collision.verdict != Verdict::kFails) {
-        entry["balance"] = Name(edge.stability.verdict);
+        entry["balance"] = Found(edge.stability.verdict);
         entry["balance_leaves"] = edge.stability.leaves;
       }
       if (VerdictOf(edge) != Verdict::kHolds) {

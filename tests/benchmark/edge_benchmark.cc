@@ -10,6 +10,8 @@
 #include "cguide/numeric/sampled_edge.h"
 #include "cguide/planner/endpoint.h"
 #include "cguide/planner/rrt.h"
+#include "cguide/verify/certificate_writer.h"
+#include "cguide/verify/check/check.h"
 #include "cguide/verify/edge_collision.h"
 #include "cguide/verify/edge_stability.h"
 #include "tests/benchmark/timing.h"
@@ -110,6 +112,50 @@ void ReportStability(const numeric::World& world, const std::vector<Edge>& edges
               static_cast<double>(leaves) / n);
 }
 
+/** Finding a proof of a whole edge, all obligations, against re-checking it. */
+void ReportProofs(const numeric::World& world, const std::vector<Edge>& edges) {
+  verify::EdgeWorkspace collision(world);
+  verify::StabilityEdgeWorkspace stability(world);
+  check::Checker fast(world.model()), precise(world.model(), {128});
+  std::vector<double> found, checked, precisely, bytes;
+  long refused = 0;
+  for (const Edge& edge : edges) {
+    verify::EdgeEvidence evidence;
+    verify::EdgeCollisionOptions collision_options;
+    verify::EdgeStabilityOptions stability_options;
+    collision_options.evidence = stability_options.evidence = &evidence;
+    Verdict verdict = Verdict::kUndecided;
+    const double us = MicrosecondsOf(1, [&] {
+      evidence = {};
+      verdict = DecideEdgeCollision(world, edge, collision_options, &collision).verdict;
+      if (verdict == Verdict::kHolds) {
+        verdict = DecideEdgeStability(world, edge, stability_options, &stability).verdict;
+      }
+    });
+    if (verdict != Verdict::kHolds) continue;
+    const check::EdgeProof proof = AssembleProof(0, evidence);
+    std::string refusal;
+    checked.push_back(MicrosecondsOf(1, [&] { refusal = fast.CheckEdge(edge, proof); }));
+    if (!refusal.empty()) {
+      std::printf("  refused: %s\n", refusal.c_str());
+      ++refused;
+      checked.pop_back();
+      continue;
+    }
+    precisely.push_back(MicrosecondsOf(1, [&] { refusal = precise.CheckEdge(edge, proof); }));
+    refused += !refusal.empty();
+    found.push_back(us);
+    bytes.push_back(static_cast<double>(verify::WriteProof(proof).size()));
+  }
+  std::printf("proofs of %zu edges, %ld refused: mean %.0f us to find, 95th percentile %.0f us\n",
+              found.size(), refused, Mean(found), Quantile(found, 0.95));
+  std::printf("  checked in doubles: mean %.0f us (%.1fx); in 128 bits: mean %.0f us (%.0fx)\n",
+              Mean(checked), Mean(checked) / Mean(found), Mean(precisely),
+              Mean(precisely) / Mean(found));
+  std::printf("  %.1f kB a proof on average, 95th percentile %.1f kB\n", Mean(bytes) / 1000,
+              Quantile(bytes, 0.95) / 1000);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -132,4 +178,5 @@ int main(int argc, char** argv) {
   ReportKinematics<3>(world, edges[0], plain);
   ReportCollisions(world, edges);
   ReportStability(world, edges);
+  ReportProofs(world, edges);
 }

@@ -37,13 +37,14 @@ TEST_CASE("A path is audited edge by edge, for every s, and its report says so")
   CHECK(audit.verdict == Verdict::kFails);
   const AuditSubject subject{"p.json", "room.yaml", "sha256:0", "0"};
   const std::string text = WriteWholeText(subject, room.problem.model, audit);
-  CHECK(text.find("2 of 3 edges hold for every s, 1 fail") != std::string::npos);
+  CHECK(text.find("2 of 3 edges proved for every s, 1 refuted") != std::string::npos);
   CHECK(text.find("edge 2") != std::string::npos);
-  CHECK(text.find("proved") == std::string::npos);  // there is no certificate
+  CHECK(audit.edges[0].proof);
+  CHECK(!audit.edges[2].proof);
   const auto json = nlohmann::json::parse(WriteWholeJson(subject, room.problem.model, audit));
-  CHECK(json["verdict"] == "fails");
+  CHECK(json["verdict"] == "refuted");
   CHECK(json["edges"].size() == 3);
-  CHECK(json["edges"][0]["verdict"] == "holds");
+  CHECK(json["edges"][0]["verdict"] == "proved");
 }
 
 TEST_CASE("A lone waypoint is an edge from it to itself") {

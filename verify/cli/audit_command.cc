@@ -3,6 +3,7 @@
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/io/guide_io.h"
 #include "cguide/verify/audit_report.h"
+#include "cguide/verify/certificate_writer.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
 #include "cguide/verify/cli/subject.h"
@@ -59,6 +60,15 @@ int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
   };
   const verify::WholeAudit audit = verify::AuditWhole(world, subject.path, options);
   const Model& model = subject.problem.model;
+  if (!arguments.certificate.empty()) {
+    std::vector<const check::EdgeProof*> proofs;
+    for (const verify::EdgeFinding& edge : audit.edges) {
+      if (edge.proof) proofs.push_back(&*edge.proof);
+    }
+    const std::string tool = std::string("cguide ") + kVersion;
+    numeric::io::WriteFileAtomically(arguments.certificate,
+                                     verify::WriteCertificate(model, subject.path, tool, proofs));
+  }
   Deliver(arguments, arguments.format == "json" ? verify::WriteWholeJson(about, model, audit)
                                                 : verify::WriteWholeText(about, model, audit));
   return ExitCodeOf(audit);
@@ -68,6 +78,11 @@ int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
 
 int RunAudit(const AuditArguments& arguments) {
   if (!arguments.output.empty()) RequireWritable(arguments.output);
+  if (!arguments.certificate.empty()) {
+    RequireWritable(arguments.certificate);
+    Require(arguments.dense_step == 0,
+            "--certificate needs proofs, which --dense does not look for");
+  }
   const Subject subject = ReadSubject(arguments.common, arguments.path, arguments.problem);
   const numeric::World world(subject.problem.model);
   const verify::AuditSubject about{arguments.path, subject.problem_file,

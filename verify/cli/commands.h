@@ -44,6 +44,7 @@ struct AuditArguments {
   double dense_step = 0;        ///< 0: none given
   std::string format = "text";  ///< text, json
   std::string output;           ///< file, or empty for stdout
+  std::string certificate;      ///< file that takes the proofs, or empty
 };
 
 struct StabilityArguments {

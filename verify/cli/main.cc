@@ -53,12 +53,14 @@ CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
   c->add_option("path", a->path, "Guide (JSON), or path (CSV) with --problem")->required();
   c->add_option("--problem", a->problem, "Problem file; default: the one the guide names");
   c->add_option("--dense", a->dense_step,
-                "Sample every edge at this step; default: decide whole edges")
+                "Sample every edge at this step; default: prove whole edges")
       ->check(CLI::Range(1e-6, 1.0));
   c->add_option("--format", a->format, "Form of the report")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
   c->add_option("-o,--output", a->output, "Report file; default: stdout");
+  c->add_option("--certificate", a->certificate,
+                "File that takes the proofs, for cguide-check; not with --dense");
   AddCommon(c, &a->common);
   return c;
 }

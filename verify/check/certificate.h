@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cguide/exact/core/model.h"
+#include "cguide/exact/core/path.h"
+
+// What a certificate says, as verify/FORMAT.md specifies it. Numbers are taken as the doubles they
+// are. "Shape" counts the shapes of the links, "piece" the pieces of the objects, both in the order
+// of the model.
+namespace cguide::check {
+
+/** The plane n.x = m0 + m1 t, in W; n need not be unit. m1 serves moving pairs alone. */
+struct Plane {
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();
+  double m0 = 0;
+  double m1 = 0;
+};
+
+/** Planes that keep a shape apart from a piece, or (self) from another shape. One for convex ones;
+ of a mesh each triangle lies behind one of them. */
+struct Separation {
+  int shape = -1;
+  int other = -1;
+  std::vector<Plane> planes;
+};
+
+/** A direction in which a ray from the shape's centre leaves a solid's surroundings: the shape is
+ outside the solid where the edge begins. */
+struct OutsideRay {
+  int shape = -1;
+  int piece = -1;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+};
+
+/** The face a site keeps above. */
+struct FlatEvidence {
+  int face = -1;               ///< of a box: axis, plus 3 for its negative side; -1: see triangles
+  std::vector<int> triangles;  ///< of a mesh or a hull: coplanar, their union star-shaped about the
+                               ///< first; none for a halfspace
+  int side = 1;  ///< 1 where the site is on the side of the first triangle's normal, else -1
+};
+
+/** A point of a convex piece near the site's closest one. */
+struct NearEvidence {
+  Eigen::Vector3d y_P = Eigen::Vector3d::Zero();  ///< in the piece's frame; not for hulls
+  std::vector<std::pair<int, double>> corners;    ///< of a hull: weights >= 0 of its vertices
+};
+
+/** Why a site keeps one contact with a piece over a node. */
+struct ContactEvidence {
+  int site = -1;
+  int piece = -1;
+  std::optional<FlatEvidence> flat;  ///< one of the two
+  std::optional<NearEvidence> near;
+  /** Pieces that keep away from the contact's point, with planes; others lie behind the face, or
+   are seen to be apart without help. `shape` is unused. */
+  std::vector<Separation> apart;
+};
+
+/** A force weight(t) u at a contact, weight = w0 + w1 t. */
+struct ForceEvidence {
+  int contact = -1;  ///< index into Balance::contacts
+  Eigen::Vector3d u_W = Eigen::Vector3d::Zero();
+  double w0 = 0;
+  double w1 = 0;
+};
+
+/** Forces that carry the robot; the first six are a basis. Where only contact is asked for, none.
+ */
+struct Balance {
+  std::vector<ContactEvidence> contacts;
+  std::vector<ForceEvidence> forces;
+};
+
+/** Part of an edge: what is proved over the whole of it, and its two halves where something is
+ * left.
+ */
+struct Node {
+  std::vector<Separation> apart;
+  std::vector<Separation> self_apart;
+  std::optional<Balance> balance;
+  std::vector<Node> halves;  ///< none or two
+};
+
+/** The proof that one edge stays in C_guide. */
+struct EdgeProof {
+  int edge = -1;  ///< from waypoint `edge` to the next
+  std::vector<OutsideRay> outside;
+  Node root;
+};
+
+struct Certificate {
+  std::string tool;
+  Model model;
+  Path path;
+  std::vector<EdgeProof> proofs;  ///< by edge, each at most once
+};
+
+/** Edges of a path; one of a single waypoint has one edge, from it to itself. */
+std::vector<Edge> EdgesOf(const Path& path);
+
+/** Reads a certificate. Files beyond 1 GiB, nested deeper than 200 levels, with repeated or unknown
+ keys, with numbers that are not finite or beyond 1e9, with indices out of range are refused.
+ @throws Error (kBadInput) that names the place. */
+Certificate ParseCertificate(const std::string& text);
+
+/** The text in which the canonical model stands in a certificate, byte for byte, or nothing where
+ the certificate does not begin as FORMAT.md says. */
+bool HasModelText(const std::string& certificate, const std::string& model_file);
+
+}  // namespace cguide::check

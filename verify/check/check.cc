@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cguide/verify/check/check.h"
+
+#include <variant>
+
+#include "cguide/exact/core/error.h"
+#include "cguide/verify/check/edge_checker_internal.h"
+#include "cguide/verify/check/interval_internal.h"
+#include "cguide/verify/check/precise_interval_internal.h"
+
+namespace cguide::check {
+namespace {
+
+/** Halving of smaller lengths would not be exact. */
+constexpr double kLeastLength = 1e-300;
+
+void RequireLength(double x) {
+  if (x >= kLeastLength) return;
+  throw Error(Error::Code::kBadInput,
+              "the model: a length below 1e-300 m; such shapes are refused");
+}
+
+void RequireLengths(const PieceShape& shape) {
+  if (const auto* box = std::get_if<Box>(&shape)) RequireLength(box->size.minCoeff());
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) RequireLength(capsule->length);
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    RequireLength(std::min(cylinder->radius, cylinder->length));
+  }
+}
+
+void RequireCheckable(const Model& model) {
+  CheckModel(model);
+  if (model.contact.model == ContactModel::kNearest) {
+    throw Error(Error::Code::kBadInput,
+                "the model: contact model \"nearest\" has no continuous proofs; use \"sites\"");
+  }
+  for (const Link& link : model.robot.links) {
+    for (const LinkShape& shape : link.shapes) {
+      RequireLengths(std::visit([](const auto& g) { return PieceShape(g); }, shape.geometry));
+    }
+  }
+  for (const Object& object : model.objects) {
+    for (const Piece& piece : object.pieces) RequireLengths(piece.geometry);
+  }
+}
+
+}  // namespace
+
+struct Checker::State {
+  State(const Model& given, const CheckOptions& options)
+      : model(given), bits(options.precise_bits) {
+    if (bits == 0) {
+      fast.emplace(model);
+    } else {
+      const PrecisionScope scope(bits);
+      precise.emplace(model);
+    }
+  }
+
+  Model model;
+  int bits;
+  std::optional<EdgeChecker<Interval>> fast;
+  std::optional<EdgeChecker<PreciseInterval>> precise;
+};
+
+Checker::Checker(const Model& model, const CheckOptions& options) {
+  const int bits = options.precise_bits;
+  Require(bits == 0 || (bits >= 53 && bits <= 4096), "the precision must lie in 53..4096 bits");
+  RequireCheckable(model);
+  state_ = std::make_unique<State>(model, options);
+}
+
+Checker::~Checker() = default;
+Checker::Checker(Checker&&) noexcept = default;
+Checker& Checker::operator=(Checker&&) noexcept = default;
+
+std::string Checker::CheckEdge(const Edge& edge, const EdgeProof& proof) {
+  if (state_->fast) return state_->fast->Check(edge, proof);
+  const PrecisionScope scope(state_->bits);
+  return state_->precise->Check(edge, proof);
+}
+
+std::string CheckLimits(const Robot& robot, const Configuration& q) {
+  for (const Joint& joint : robot.joints) {
+    if (joint.type != JointType::kRevolute && joint.type != JointType::kPrismatic) continue;
+    const int column = joint.mimic ? robot.joints[joint.mimic->joint].column : joint.column;
+    Rational value = Lift(q.joints[column]);
+    if (joint.mimic) value = Lift(joint.mimic->multiplier) * value + Lift(joint.mimic->offset);
+    if (value < Lift(joint.lower) || value > Lift(joint.upper)) return joint.name;
+  }
+  return {};
+}
+
+std::vector<Edge> EdgesOf(const Path& path) {
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i + 1 < path.waypoints.size(); ++i) {
+    edges.push_back({path.waypoints[i], path.waypoints[i + 1]});
+  }
+  if (edges.empty()) edges.push_back({path.waypoints.at(0), path.waypoints.at(0)});
+  return edges;
+}
+
+CheckReport CheckCertificate(const Certificate& certificate, const CheckOptions& options) {
+  const Robot& robot = certificate.model.robot;
+  Checker checker(certificate.model, options);
+  CheckPath(certificate.path, robot);
+  const std::vector<Edge> edges = EdgesOf(certificate.path);
+  CheckReport report;
+  report.edges = static_cast<int>(edges.size());
+  for (std::size_t i = 0; i < certificate.path.waypoints.size(); ++i) {
+    const std::string joint = CheckLimits(robot, certificate.path.waypoints[i]);
+    if (joint.empty()) continue;
+    report.refused.push_back("waypoint " + std::to_string(i) + ": joint \"" + joint +
+                             "\" is beyond its limits");
+  }
+  std::vector<char> proved(edges.size(), 0);
+  for (const EdgeProof& proof : certificate.proofs) {
+    const std::string place = "edge " + std::to_string(proof.edge);
+    if (proof.edge < 0 || proof.edge >= report.edges) {
+      report.refused.push_back(place + ": the path has no such edge");
+      continue;
+    }
+    const std::string refusal = checker.CheckEdge(edges[proof.edge], proof);
+    if (refusal.empty()) {
+      proved[proof.edge] = 1;
+    } else {
+      report.refused.push_back(place + ": " + refusal);
+    }
+  }
+  for (int i = 0; i < report.edges; ++i) {
+    report.proved += proved[i];
+    const bool claimed = std::any_of(certificate.proofs.begin(), certificate.proofs.end(),
+                                     [i](const EdgeProof& proof) { return proof.edge == i; });
+    if (!claimed) report.missing.push_back(i);
+  }
+  return report;
+}
+
+}  // namespace cguide::check

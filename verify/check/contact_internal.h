@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "cguide/verify/check/exact_plane.h"
+#include "cguide/verify/check/separation_internal.h"
+
+// Contacts that stay over a span (FORMAT.md part 5).
+namespace cguide::check {
+
+/** A contact with what is known of it for every t: |n - real normal| <= error. */
+template <typename I>
+struct KeptContact {
+  IntervalVector<I> n;  ///< unit
+  I error;
+  double friction = 0;
+  PolynomialVector<I> point;  ///< where forces act
+};
+
+/** Answers of exact_plane.h that were given before: (piece, face, triangle, side) of the plane,
+ piece and triangle asked about. */
+using BehindCache = std::map<std::tuple<int, int, int, int, int, int>, bool>;
+
+/** A site and what it is tested against. */
+template <typename I>
+struct MovingSite {
+  PolynomialVector<I> x;
+  double radius = 0;
+  double skin = 0;
+};
+
+template <typename I>
+class ContactChecker {
+ public:
+  ContactChecker(const Prepared<I>& prepared, const std::vector<MovingPose<I>>& links,
+                 BehindCache* cache)
+      : prepared_(prepared), model_(*prepared.model), links_(links), cache_(*cache) {}
+
+  /** The contact, or nothing where the evidence does not carry it. */
+  std::optional<KeptContact<I>> Keep(const ContactEvidence& evidence) const;
+
+ private:
+  struct Flat {
+    IntervalVector<I> n;
+    I h;
+    ExactPlane exact;
+    std::tuple<int, int, int, int> key;
+  };
+  /** A ball about a moving point, to be kept apart from pieces. */
+  struct Guard {
+    PolynomialVector<I> center;
+    I radius;
+    WorldBox<I> box;
+  };
+
+  std::optional<KeptContact<I>> KeepOnFlat(const ContactEvidence& evidence,
+                                           const MovingSite<I>& site) const;
+  std::optional<KeptContact<I>> KeepNear(const ContactEvidence& evidence,
+                                         const MovingSite<I>& site) const;
+  std::optional<Flat> FlatOf(const ContactEvidence& evidence) const;
+  bool IsOverFace(const ContactEvidence& evidence, const Flat& flat, const MovingSite<I>& site,
+                  const PolynomialVector<I>& y) const;
+  bool IsOverTriangles(const ContactEvidence& evidence, const Flat& flat,
+                       const PolynomialVector<I>& y) const;
+  bool OthersAllow(const ContactEvidence& evidence, const Flat& flat, const Guard& guard,
+                   double* friction) const;
+  bool IsAway(const Guard& guard, int piece, const std::vector<Plane>& planes) const;
+  bool IsAway(const Guard& guard, const PlacedMesh<I>& mesh, const PlacedTriangle<I>& triangle,
+              const std::vector<Plane>& planes) const;
+  bool LiesBehind(const Flat& flat, int piece, int triangle) const;
+  std::optional<IntervalVector<I>> PointOf(const NearEvidence& near, const Piece& piece) const;
+  I Excess(const PlacedSet<I>& placed, const IntervalVector<I>& y_P,
+           const IntervalVector<I>& w_W) const;
+  Guard MakeGuard(const PolynomialVector<I>& center, const I& radius) const;
+
+  const std::vector<Plane>& PlanesFor(const ContactEvidence& evidence, int piece) const {
+    static const std::vector<Plane> kNone;
+    for (const Separation& s : evidence.apart) {
+      if (s.other == piece) return s.planes;
+    }
+    return kNone;
+  }
+  std::array<Eigen::Vector3d, 3> CornersOf(int piece, int triangle) const;
+  IntervalVector<I> Placed(int piece, const Eigen::Vector3d& v) const {
+    return Apply(Lifted<I>(prepared_.obstacles[piece].piece->X_WP), Lifted<I>(v));
+  }
+
+  const Prepared<I>& prepared_;
+  const Model& model_;
+  const std::vector<MovingPose<I>>& links_;
+  BehindCache& cache_;
+};
+
+template <typename I>
+IntervalVector<I> Normalized(const IntervalVector<I>& v) {
+  const I scale = Inverse(Norm(v));
+  return {scale * v[0], scale * v[1], scale * v[2]};
+}
+
+template <typename I>
+typename ContactChecker<I>::Guard ContactChecker<I>::MakeGuard(const PolynomialVector<I>& center,
+                                                               const I& radius) const {
+  Guard guard{center, radius, {}};
+  for (int i = 0; i < 3; ++i) guard.box[i] = RangeOf(center[i]) + PlusMinus(radius);
+  return guard;
+}
+
+template <typename I>
+bool KeepsAbove(const PolynomialVector<I>& x, const I& radius, const IntervalVector<I>& n,
+                const I& height) {
+  return IsPositive(LowerBound(Dot(n, x)) - height - radius * Norm(n));
+}
+
+template <typename I>
+bool ContactChecker<I>::IsAway(const Guard& guard, int piece,
+                               const std::vector<Plane>& planes) const {
+  const Obstacle<I>& obstacle = prepared_.obstacles[piece];
+  if (obstacle.halfspace) {
+    return KeepsAbove(guard.center, guard.radius, obstacle.halfspace->normal,
+                      obstacle.halfspace->offset);
+  }
+  if (obstacle.mesh) {
+    return obstacle.mesh->triangles.empty() || Apart(guard.box, obstacle.mesh->box);
+  }
+  if (Apart(guard.box, obstacle.convex->box)) return true;
+  return std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
+    const IntervalVector<I> n = Lifted<I>(plane.n);
+    return KeepsAbove(guard.center, guard.radius, n, HighestOf(*obstacle.convex, n));
+  });
+}
+
+template <typename I>
+bool ContactChecker<I>::IsAway(const Guard& guard, const PlacedMesh<I>& mesh,
+                               const PlacedTriangle<I>& triangle,
+                               const std::vector<Plane>& planes) const {
+  if (Apart(guard.box, triangle.box)) return true;
+  return std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
+    const IntervalVector<I> n = Lifted<I>(plane.n);
+    return KeepsAbove(guard.center, guard.radius, n, HighestOf(mesh, triangle, n));
+  });
+}
+
+template <typename I>
+std::array<Eigen::Vector3d, 3> ContactChecker<I>::CornersOf(int piece, int triangle) const {
+  const PieceShape& shape = prepared_.obstacles[piece].piece->geometry;
+  const auto pick = [&](const auto& mesh, const auto& faces) -> std::array<Eigen::Vector3d, 3> {
+    const std::array<int, 3>& t = faces.at(triangle);
+    return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
+  };
+  if (const auto* hull = std::get_if<::cguide::Hull>(&shape)) return pick(*hull, hull->faces);
+  if (const auto* surface = std::get_if<Surface>(&shape)) return pick(*surface, surface->triangles);
+  const Solid& solid = std::get<Solid>(shape);
+  return pick(solid, solid.triangles);
+}
+
+template <typename I>
+bool ContactChecker<I>::LiesBehind(const Flat& flat, int piece, int triangle) const {
+  const auto key = std::tuple_cat(flat.key, std::tuple(piece, triangle));
+  const auto [entry, is_new] = cache_.try_emplace(key, false);
+  if (!is_new) return entry->second;
+  const Piece& asked = *prepared_.obstacles[piece].piece;
+  if (triangle < 0) return entry->second = IsBehind(flat.exact, asked);
+  bool behind = true;
+  for (const Eigen::Vector3d& v : CornersOf(piece, triangle)) {
+    behind = behind && IsBehind(flat.exact, ApplyExactly(asked.X_WP, v));
+  }
+  return entry->second = behind;
+}
+
+template <typename I>
+std::optional<typename ContactChecker<I>::Flat> ContactChecker<I>::FlatOf(
+    const ContactEvidence& evidence) const {
+  const FlatEvidence& given = *evidence.flat;
+  const Obstacle<I>& obstacle = prepared_.obstacles[evidence.piece];
+  const Piece& piece = *obstacle.piece;
+  Flat flat;
+  flat.key = {evidence.piece, given.face, given.triangles.empty() ? -1 : given.triangles[0],
+              given.side};
+  if (obstacle.halfspace) {
+    flat.n = obstacle.halfspace->normal;
+    flat.h = obstacle.halfspace->offset;
+    flat.exact = PlaneOfHalfspace(piece.X_WP, std::get<Halfspace>(piece.geometry));
+    return flat;
+  }
+  if (const auto* box = std::get_if<Box>(&piece.geometry)) {
+    if (given.face < 0) return std::nullopt;
+    const int axis = given.face % 3;
+    flat.n = obstacle.convex->X.R[axis];
+    if (given.face >= 3) flat.n = Negated(flat.n);
+    flat.h = Dot(flat.n, obstacle.convex->X.p) + I(0.5) * I(box->size[axis]);
+    flat.exact = PlaneOfFace(piece.X_WP, *box, given.face);
+    return flat;
+  }
+  const bool has_triangles =
+      obstacle.mesh || std::holds_alternative<::cguide::Hull>(piece.geometry);
+  if (!has_triangles || given.triangles.empty()) return std::nullopt;
+  const std::array<Eigen::Vector3d, 3> corners = CornersOf(evidence.piece, given.triangles[0]);
+  std::array<Vector3q, 3> exact;
+  IntervalVector<I> v[3];
+  for (int k = 0; k < 3; ++k) {
+    exact[k] = ApplyExactly(piece.X_WP, corners[k]);
+    v[k] = Placed(evidence.piece, corners[k]);
+  }
+  flat.exact = PlaneOfTriangle(exact, given.side);
+  flat.n = Normalized(Cross(Minus(v[1], v[0]), Minus(v[2], v[0])));
+  if (given.side < 0) flat.n = Negated(flat.n);
+  flat.h = Dot(flat.n, v[0]);
+  return flat;
+}
+
+/** The foot stays in the union of the triangles: it is connected with the first one's centroid by a
+ segment that meets no edge of the union's border, because both its ends are on the inner side of
+ each border edge (FORMAT.md, lemma 6). */
+template <typename I>
+bool ContactChecker<I>::IsOverTriangles(const ContactEvidence& evidence, const Flat& flat,
+                                        const PolynomialVector<I>& y) const {
+  const Pose& X = prepared_.obstacles[evidence.piece].piece->X_WP;
+  std::vector<std::array<Eigen::Vector3d, 2>> edges;
+  IntervalVector<I> centroid;
+  for (const int index : evidence.flat->triangles) {
+    std::array<Eigen::Vector3d, 3> v = CornersOf(evidence.piece, index);
+    std::array<Vector3q, 3> exact;
+    for (int k = 0; k < 3; ++k) exact[k] = ApplyExactly(X, v[k]);
+    const ExactPlane plane = PlaneOfTriangle(exact, 1);
+    for (const Vector3q& p : exact) {
+      if (!IsBehind(flat.exact, p) || !IsBehind({-flat.exact.n, -flat.exact.h}, p)) return false;
+    }
+    const Rational sense =
+        plane.n[0] * flat.exact.n[0] + plane.n[1] * flat.exact.n[1] + plane.n[2] * flat.exact.n[2];
+    if (sense == 0) return false;  // a degenerate triangle
+    if (sense < 0) std::swap(v[1], v[2]);
+    for (int k = 0; k < 3; ++k) edges.push_back({v[k], v[(k + 1) % 3]});
+    if (index != evidence.flat->triangles[0]) continue;
+    for (int i = 0; i < 3; ++i) centroid[i] = I(0.0);
+    for (int k = 0; k < 3; ++k) {
+      const IntervalVector<I> p = Placed(evidence.piece, v[k]);
+      for (int i = 0; i < 3; ++i) centroid[i] = centroid[i] + Inverse(I(3.0)) * p[i];
+    }
+  }
+  for (const auto& edge : edges) {
+    const std::array<Eigen::Vector3d, 2> reverse{edge[1], edge[0]};
+    if (std::find(edges.begin(), edges.end(), reverse) != edges.end()) continue;
+    const IntervalVector<I> from = Placed(evidence.piece, edge[0]);
+    const IntervalVector<I> way = Minus(Placed(evidence.piece, edge[1]), from);
+    const IntervalVector<I> inward = Cross(flat.n, way);
+    const I border = Dot(inward, from);
+    if (!IsPositive(Dot(inward, centroid) - border)) return false;
+    if (!IsPositive(LowerBound(Dot(inward, y)) - border)) return false;
+  }
+  return true;
+}
+
+template <typename I>
+bool ContactChecker<I>::IsOverFace(const ContactEvidence& evidence, const Flat& flat,
+                                   const MovingSite<I>& site, const PolynomialVector<I>& y) const {
+  const Obstacle<I>& obstacle = prepared_.obstacles[evidence.piece];
+  if (obstacle.halfspace) return true;
+  const auto* box = std::get_if<Box>(&obstacle.piece->geometry);
+  if (!box) return IsOverTriangles(evidence, flat, y);
+  const int axis = evidence.flat->face % 3;
+  const auto half = [&](int k) { return I(0.5) * I(box->size[k]) - I(site.skin); };
+  if (!IsPositive(half(axis))) return false;
+  for (const int k : {(axis + 1) % 3, (axis + 2) % 3}) {
+    const IntervalVector<I>& a = obstacle.convex->X.R[k];
+    const Polynomial<I> along = Dot(a, site.x) - Polynomial<I>(Dot(a, obstacle.convex->X.p));
+    if (!IsPositive(half(k) - Magnitude(RangeOf(along)))) return false;
+  }
+  return true;
+}
+
+template <typename I>
+bool ContactChecker<I>::OthersAllow(const ContactEvidence& evidence, const Flat& flat,
+                                    const Guard& guard, double* friction) const {
+  for (int p = 0; p < static_cast<int>(prepared_.obstacles.size()); ++p) {
+    const Obstacle<I>& obstacle = prepared_.obstacles[p];
+    const bool own_primitive = p == evidence.piece && evidence.flat->triangles.empty();
+    const std::vector<Plane>& planes = PlanesFor(evidence, p);
+    if (own_primitive || IsAway(guard, p, planes)) continue;
+    if (obstacle.mesh) {
+      for (int t = 0; t < static_cast<int>(obstacle.mesh->triangles.size()); ++t) {
+        if (IsAway(guard, *obstacle.mesh, obstacle.mesh->triangles[t], planes)) continue;
+        if (!LiesBehind(flat, p, t)) return false;
+      }
+    } else if (!LiesBehind(flat, p, -1)) {
+      return false;
+    }
+    *friction = std::min(*friction, model_.objects[obstacle.object].friction);
+  }
+  return true;
+}
+
+// The distance from the plane is that from the piece because the foot lies in the face; of other
+// pieces every point within the seam of the foot is behind the plane and so no nearer.
+template <typename I>
+std::optional<KeptContact<I>> ContactChecker<I>::KeepOnFlat(const ContactEvidence& evidence,
+                                                            const MovingSite<I>& site) const {
+  const std::optional<Flat> flat = FlatOf(evidence);
+  if (!flat) return std::nullopt;
+  const Polynomial<I> d = Dot(flat->n, site.x) - Polynomial<I>(flat->h);
+  const I lowest = LowerBound(d), r(site.radius);
+  if (!IsPositive(lowest - (r - I(site.skin)))) return std::nullopt;
+  if (!evidence.flat->triangles.empty() && !IsPositive(lowest)) return std::nullopt;
+  if (!IsNegative(UpperBound(d) - (r + I(model_.contact.epsilon)))) return std::nullopt;
+  PolynomialVector<I> y;
+  for (int i = 0; i < 3; ++i) y[i] = site.x[i] - flat->n[i] * d;
+  if (!IsOverFace(evidence, *flat, site, y)) return std::nullopt;
+  KeptContact<I> kept{flat->n, I(0.0),
+                      model_.objects[prepared_.obstacles[evidence.piece].object].friction, site.x};
+  const Guard guard = MakeGuard(y, I(model_.contact.seam));
+  if (!OthersAllow(evidence, *flat, guard, &kept.friction)) return std::nullopt;
+  for (int i = 0; i < 3; ++i) kept.point[i].c[0] = kept.point[i].c[0] - r * flat->n[i];
+  return kept;
+}
+
+/** The evidence's point in the piece's frame, where it belongs to the core. */
+template <typename I>
+std::optional<IntervalVector<I>> ContactChecker<I>::PointOf(const NearEvidence& near,
+                                                            const Piece& piece) const {
+  const Eigen::Vector3d& y = near.y_P;
+  if (const auto* hull = std::get_if<::cguide::Hull>(&piece.geometry)) {
+    IntervalVector<I> sum{I(0.0), I(0.0), I(0.0)};
+    I total(0.0);
+    for (const auto& [index, weight] : near.corners) {
+      if (index >= static_cast<int>(hull->vertices.size()) || !(weight >= 0)) return std::nullopt;
+      total = total + I(weight);
+      for (int i = 0; i < 3; ++i) sum[i] = sum[i] + I(weight) * I(hull->vertices[index][i]);
+    }
+    if (!IsPositive(total)) return std::nullopt;
+    for (I& x : sum) x = Inverse(total) * x;
+    return sum;
+  }
+  bool inside = std::holds_alternative<Sphere>(piece.geometry) && y.isZero(0);
+  if (const auto* box = std::get_if<Box>(&piece.geometry)) {
+    inside = (2 * y.array().abs() <= box->size.array()).all();
+  } else if (const auto* capsule = std::get_if<Capsule>(&piece.geometry)) {
+    inside = y[0] == 0 && y[1] == 0 && 2 * std::abs(y[2]) <= capsule->length;
+  } else if (const auto* cylinder = std::get_if<Cylinder>(&piece.geometry)) {
+    const I room =
+        I(cylinder->radius) * I(cylinder->radius) - I(y[0]) * I(y[0]) - I(y[1]) * I(y[1]);
+    inside = 2 * std::abs(y[2]) <= cylinder->length && IsNonNegative(room);
+  }
+  if (!inside) return std::nullopt;
+  return Lifted<I>(y);
+}
+
+/** max w.(z - y) over the core's points z. */
+template <typename I>
+I ContactChecker<I>::Excess(const PlacedSet<I>& placed, const IntervalVector<I>& y_P,
+                            const IntervalVector<I>& w_W) const {
+  if (placed.set.rim > 0) return HighestOfCore(placed, w_W) - Dot(w_W, Apply(placed.X, y_P));
+  const IntervalVector<I> w_P{Dot(placed.X.R[0], w_W), Dot(placed.X.R[1], w_W),
+                              Dot(placed.X.R[2], w_W)};
+  I excess(0.0);
+  for (const IntervalVector<I>& v : placed.set.corners) {
+    excess = Join(excess, Dot(w_P, Minus(v, y_P)));
+  }
+  return Upper(excess);
+}
+
+// y and w are those of the core; the piece's point is y + ball n, its distance |w| - ball
+// (FORMAT.md, lemma 7).
+template <typename I>
+std::optional<KeptContact<I>> ContactChecker<I>::KeepNear(const ContactEvidence& evidence,
+                                                          const MovingSite<I>& site) const {
+  const Obstacle<I>& obstacle = prepared_.obstacles[evidence.piece];
+  if (!obstacle.convex) return std::nullopt;
+  const PlacedSet<I>& placed = *obstacle.convex;
+  const auto y_P = PointOf(*evidence.near, *obstacle.piece);
+  if (!y_P) return std::nullopt;
+  const IntervalVector<I> y0 = Apply(placed.X, *y_P);
+  IntervalVector<I> x0, away;
+  for (int i = 0; i < 3; ++i) {
+    x0[i] = I(site.x[i].c[0].Middle());
+    away[i] = Magnitude(RangeOf(site.x[i]) - x0[i]);
+  }
+  const IntervalVector<I> w0 = Minus(x0, y0);
+  const I step = Upper(Norm(away)), spread = Upper(step + Sqrt(Excess(placed, *y_P, w0)));
+  const I length = Norm(w0), ball(placed.set.radius), r(site.radius);
+  const I nearest = Lower(length) - spread - ball, farthest = Upper(length) + spread - ball;
+  if (!IsPositive(nearest - r) || !IsPositive(nearest)) return std::nullopt;
+  if (!IsNegative(farthest - r - I(model_.contact.epsilon))) return std::nullopt;
+  KeptContact<I> kept{Normalized(w0), Upper(I(2.0) * spread * Inverse(Lower(length))),
+                      model_.objects[obstacle.object].friction, site.x};
+  PolynomialVector<I> surface, center;
+  for (int i = 0; i < 3; ++i) {
+    surface[i] = Polynomial<I>(y0[i] + ball * kept.n[i]);
+    center[i] = Polynomial<I>(x0[i]);
+    kept.point[i].c[0] = kept.point[i].c[0] - r * kept.n[i] + PlusMinus(r * kept.error);
+  }
+  const Guard seam = MakeGuard(surface, Upper(I(model_.contact.seam) + spread + ball * kept.error));
+  const Guard nearer = MakeGuard(center, Upper(step + farthest));
+  for (int p = 0; p < static_cast<int>(prepared_.obstacles.size()); ++p) {
+    const Obstacle<I>& other = prepared_.obstacles[p];
+    const std::vector<Plane>& planes = PlanesFor(evidence, p);
+    if (p == evidence.piece || IsAway(seam, p, planes)) continue;
+    if (other.mesh) {
+      for (const PlacedTriangle<I>& t : other.mesh->triangles) {
+        if (!IsAway(seam, *other.mesh, t, planes) && !IsAway(nearer, *other.mesh, t, planes)) {
+          return std::nullopt;
+        }
+      }
+    } else if (!IsAway(nearer, p, planes)) {
+      return std::nullopt;
+    }
+    kept.friction = std::min(kept.friction, model_.objects[other.object].friction);
+  }
+  return kept;
+}
+
+template <typename I>
+std::optional<KeptContact<I>> ContactChecker<I>::Keep(const ContactEvidence& evidence) const {
+  const Site& site = model_.sites[evidence.site];
+  const int body = model_.robot.links[site.link].body;
+  const auto& allowed = model_.contact.bodies;
+  if (std::find(allowed.begin(), allowed.end(), body) == allowed.end()) return std::nullopt;
+  const int object = prepared_.obstacles[evidence.piece].object;
+  const MovingSite<I> moving{Apply(links_[site.link], Lifted<I>(site.x_L)), site.radius,
+                             prepared_.Skin(body, object)};
+  if (evidence.flat) return KeepOnFlat(evidence, moving);
+  return evidence.near ? KeepNear(evidence, moving) : std::nullopt;
+}
+
+}  // namespace cguide::check

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "cguide/exact/core/error.h"
+#include "cguide/verify/check/balance_internal.h"
+
+// One edge against its proof: what is asked for is derived from the model alone, and whatever the
+// proof leaves open somewhere in [0, 1] refuses it (FORMAT.md part 3).
+namespace cguide::check {
+
+template <typename I>
+class EdgeChecker {
+ public:
+  explicit EdgeChecker(const Model& model) : prepared_(model) {}
+
+  /** Empty where the proof holds, else what does not and where. */
+  std::string Check(const Edge& edge, const EdgeProof& proof) {
+    if (DotOf(edge.from.X_WB.q, edge.to.X_WB.q) == 0) return "the shorter arc is not defined";
+    edge_ = &edge;
+    refusal_.clear();
+    std::vector<Obligation> all = AllObligations();
+    if (!CheckOutside(proof, all)) return refusal_;
+    CheckNode(proof.root, {0.5, 0.5}, std::move(all), true);
+    return refusal_;
+  }
+
+ private:
+  /** A shape and a piece, or (self) two shapes, to be kept apart. */
+  struct Obligation {
+    int shape = -1;
+    int other = -1;
+    bool self = false;
+  };
+
+  std::vector<Obligation> AllObligations() const {
+    std::vector<Obligation> all;
+    const int shapes = static_cast<int>(prepared_.shapes.size());
+    const int pieces = static_cast<int>(prepared_.obstacles.size());
+    for (int s = 0; s < shapes; ++s) {
+      for (int p = 0; p < pieces; ++p) all.push_back({s, p, false});
+    }
+    for (const auto& [i, j] : prepared_.model->self_pairs) {
+      for (int s = 0; s < shapes; ++s) {
+        for (int t = 0; t < shapes; ++t) {
+          if (prepared_.shapes[s].body == i && prepared_.shapes[t].body == j) {
+            all.push_back({s, t, true});
+          }
+        }
+      }
+    }
+    return all;
+  }
+
+  bool Refuse(const Span& span, const std::string& why) {
+    refusal_ = why + " is not shown for s in [" + std::to_string(span.middle - span.half) + ", " +
+               std::to_string(span.middle + span.half) + "]";
+    return false;
+  }
+
+  std::string Describe(const Obligation& o) const {
+    const Robot& robot = prepared_.model->robot;
+    const std::string first = robot.links[prepared_.shapes[o.shape].link].name;
+    const std::string second =
+        o.self ? robot.links[prepared_.shapes[o.other].link].name
+               : prepared_.model->objects[prepared_.obstacles[o.other].object].name;
+    return "that \"" + first + "\" (shape " + std::to_string(o.shape) + ") and \"" + second +
+           "\" (" + (o.self ? "shape " : "piece ") + std::to_string(o.other) + ") keep apart";
+  }
+
+  void PlaceAt(const Span& span) {
+    PlaceLinks(prepared_.model->robot, prepared_.joints, *edge_, span, &links_);
+    moved_.assign(prepared_.shapes.size(), std::nullopt);
+  }
+
+  const MovingSet<I>& Shape(int index) {
+    std::optional<MovingSet<I>>& moved = moved_[index];
+    if (!moved) {
+      const RobotShape<I>& shape = prepared_.shapes[index];
+      moved = Move(shape.set, shape.X_LS, links_[shape.link]);
+    }
+    return *moved;
+  }
+
+  bool CheckOutside(const EdgeProof& proof, const std::vector<Obligation>& all);
+  bool CheckNode(const Node& node, const Span& span, std::vector<Obligation> open,
+                 bool balance_open);
+  bool Holds(const Obligation& o, const Node& node);
+  bool CheckBalance(const Balance& balance, const Span& span);
+
+  Prepared<I> prepared_;
+  const Edge* edge_ = nullptr;
+  std::string refusal_;
+  std::vector<MovingPose<I>> links_;
+  std::vector<std::optional<MovingSet<I>>> moved_;
+  BehindCache behind_;
+};
+
+// A solid's surface is kept apart from the shape for all s, so that its side is the one at s = 0.
+template <typename I>
+bool EdgeChecker<I>::CheckOutside(const EdgeProof& proof, const std::vector<Obligation>& all) {
+  const Span start{0, 0};
+  bool placed = false;
+  for (const Obligation& o : all) {
+    if (o.self) break;
+    const Obstacle<I>& obstacle = prepared_.obstacles[o.other];
+    if (!obstacle.mesh || !obstacle.mesh->solid || obstacle.mesh->triangles.empty()) continue;
+    if (!placed) PlaceAt(start);
+    placed = true;
+    const MovingSet<I>& shape = Shape(o.shape);
+    if (Apart(shape.box, obstacle.mesh->box)) continue;
+    const Eigen::Vector3d center = 0.5 * shape.set->lower + 0.5 * shape.set->upper;
+    const PolynomialVector<I> c = Apply(shape.X, Lifted<I>(center));
+    const IntervalVector<I> p{c[0].c[0], c[1].c[0], c[2].c[0]};
+    const bool outside =
+        std::any_of(proof.outside.begin(), proof.outside.end(), [&](const OutsideRay& ray) {
+          return ray.shape == o.shape && ray.piece == o.other &&
+                 IsOutside(p, *obstacle.mesh, ray.direction);
+        });
+    if (!outside) return Refuse(start, Describe(o) + " (outside the solid)");
+  }
+  return true;
+}
+
+template <typename I>
+bool EdgeChecker<I>::Holds(const Obligation& o, const Node& node) {
+  static const std::vector<Plane> kNone;
+  const std::vector<Plane>* planes = &kNone;
+  for (const Separation& s : o.self ? node.self_apart : node.apart) {
+    if (s.shape == o.shape && s.other == o.other) planes = &s.planes;
+  }
+  if (o.self) return AreApart(Shape(o.shape), Shape(o.other), *planes);
+  const Obstacle<I>& obstacle = prepared_.obstacles[o.other];
+  return IsFree(Shape(o.shape), obstacle, *planes,
+                prepared_.Skin(prepared_.shapes[o.shape].body, obstacle.object));
+}
+
+template <typename I>
+bool EdgeChecker<I>::CheckBalance(const Balance& balance, const Span& span) {
+  const Model& model = *prepared_.model;
+  const ContactChecker<I> contacts(prepared_, links_, &behind_);
+  std::vector<KeptContact<I>> kept;
+  for (const ContactEvidence& evidence : balance.contacts) {
+    auto contact = contacts.Keep(evidence);
+    if (!contact) {
+      return Refuse(span, "that site " + std::to_string(evidence.site) +
+                              " keeps contact with piece " + std::to_string(evidence.piece));
+    }
+    kept.push_back(std::move(*contact));
+  }
+  if (model.require == GuideRequirement::kContact) {
+    return !kept.empty() || Refuse(span, "contact");
+  }
+  if (balance.forces.size() < 6) return Refuse(span, "balance (fewer than six forces)");
+  I mass;
+  const PolynomialVector<I> com = CenterOfMass(model.robot, links_, &mass);
+  std::vector<MovingWrench<I>> wrenches;
+  std::vector<Polynomial<I>> weights;
+  for (const ForceEvidence& force : balance.forces) {
+    const KeptContact<I>& contact = kept[force.contact];
+    if (!IsAdmissible(contact, force.u_W)) {
+      return Refuse(span, "that a force stays in the friction cone of contact " +
+                              std::to_string(force.contact));
+    }
+    wrenches.push_back(WrenchOf(contact.point - com, force.u_W));
+    weights.emplace_back(I(force.w0), I(force.w1), I(0.0));
+  }
+  IntervalVector<I> v_f;
+  for (int i = 0; i < 3; ++i) v_f[i] = -(mass * I(model.gravity[i]));
+  return IsInterior(wrenches, weights, v_f) || Refuse(span, "that the forces carry the robot");
+}
+
+template <typename I>
+bool EdgeChecker<I>::CheckNode(const Node& node, const Span& span, std::vector<Obligation> open,
+                               bool balance_open) {
+  if (!open.empty() || (balance_open && node.balance)) PlaceAt(span);
+  std::erase_if(open, [&](const Obligation& o) { return Holds(o, node); });
+  if (balance_open && node.balance) {
+    if (!CheckBalance(*node.balance, span)) return false;
+    balance_open = false;
+  }
+  if (open.empty() && !balance_open) return true;
+  // Shorter spans could not be halved exactly.
+  if (node.halves.size() != 2 || span.half < 0x1p-40) {
+    return Refuse(span, open.empty() ? std::string("balance") : Describe(open.front()));
+  }
+  const double half = 0.5 * span.half;
+  return CheckNode(node.halves[0], {span.middle - half, half}, open, balance_open) &&
+         CheckNode(node.halves[1], {span.middle + half, half}, std::move(open), balance_open);
+}
+
+}  // namespace cguide::check

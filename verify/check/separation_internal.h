@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cguide/verify/check/certificate.h"
+#include "cguide/verify/check/obstacles_internal.h"
+
+// Collision obligations over a span (FORMAT.md part 4).
+namespace cguide::check {
+
+/** Largest n.v of a triangle. */
+template <typename I>
+I HighestOf(const PlacedMesh<I>& mesh, const PlacedTriangle<I>& t, const IntervalVector<I>& n) {
+  const Corners<I>& v = mesh.vertices_W;
+  return Upper(Join(Dot(n, v[t.vertex[0]]), Join(Dot(n, v[t.vertex[1]]), Dot(n, v[t.vertex[2]]))));
+}
+
+/** A moving shape keeps above n.x = offset, or does so after a translation along n of less than
+ `skin`. */
+template <typename I>
+bool IsAbove(const MovingSet<I>& shape, const IntervalVector<I>& n, const I& offset, double skin) {
+  I lowest = LowestOver(shape, n, Polynomial<I>(offset));
+  if (skin > 0) lowest = lowest + I(skin) * Lower(Norm(n));
+  return IsPositive(lowest);
+}
+
+template <typename I>
+bool IsFreeOfMesh(const MovingSet<I>& shape, const PlacedMesh<I>& mesh,
+                  const std::vector<Plane>& planes, double skin) {
+  if (mesh.triangles.empty() || Apart(shape.box, mesh.box)) return true;
+  for (const Plane& plane : planes) {
+    if (!IsAbove(shape, Lifted<I>(plane.n), I(plane.m0), skin)) return false;
+  }
+  for (const PlacedTriangle<I>& t : mesh.triangles) {
+    if (Apart(shape.box, t.box)) continue;
+    const bool behind = std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
+      return IsNonNegative(I(plane.m0) - HighestOf(mesh, t, Lifted<I>(plane.n)));
+    });
+    if (!behind) return false;
+  }
+  return true;
+}
+
+/** Whether a shape keeps clear of a piece over the span. Solids are kept strictly apart whatever
+ the skin: a shape thinner than the skin could pass through their surface, and its side would no
+ longer be the one it had at s = 0. */
+template <typename I>
+bool IsFree(const MovingSet<I>& shape, const Obstacle<I>& obstacle,
+            const std::vector<Plane>& planes, double skin) {
+  if (obstacle.halfspace) {
+    return IsAbove(shape, obstacle.halfspace->normal, obstacle.halfspace->offset, skin);
+  }
+  if (obstacle.mesh) {
+    return IsFreeOfMesh(shape, *obstacle.mesh, planes, obstacle.mesh->solid ? 0 : skin);
+  }
+  if (Apart(shape.box, obstacle.convex->box)) return true;
+  return std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
+    const IntervalVector<I> n = Lifted<I>(plane.n);
+    return IsAbove(shape, n, HighestOf(*obstacle.convex, n), skin);
+  });
+}
+
+/** Whether two shapes of the robot keep apart over the span. */
+template <typename I>
+bool AreApart(const MovingSet<I>& a, const MovingSet<I>& b, const std::vector<Plane>& planes) {
+  if (Apart(a.box, b.box)) return true;
+  return std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
+    const IntervalVector<I> n = Lifted<I>(plane.n);
+    const Polynomial<I> l(I(plane.m0), I(plane.m1), I(0.0));
+    return IsPositive(LowestOver(a, n, l)) && IsNegative(HighestOver(b, n, l));
+  });
+}
+
+template <typename I>
+I Determinant(const IntervalVector<I>& a, const IntervalVector<I>& b, const IntervalVector<I>& c) {
+  return Dot(a, Cross(b, c));
+}
+
+/** Whether a point is outside a solid: its winding number, the signed number of triangles that a
+ ray from it crosses, is zero (FORMAT.md, lemma 4). False where a crossing is not certain. */
+template <typename I>
+bool IsOutside(const IntervalVector<I>& p, const PlacedMesh<I>& mesh,
+               const Eigen::Vector3d& direction) {
+  const IntervalVector<I> u = Lifted<I>(direction);
+  int winding = 0;
+  for (const PlacedTriangle<I>& t : mesh.triangles) {
+    IntervalVector<I> v[3];
+    for (int k = 0; k < 3; ++k) v[k] = Minus(mesh.vertices_W[t.vertex[k]], p);
+    int positive = 0, negative = 0;
+    I sum(0.0);
+    for (int k = 0; k < 3; ++k) {
+      const I side = Determinant(u, v[k], v[(k + 1) % 3]);
+      positive += IsPositive(side);
+      negative += IsNegative(side);
+      sum = sum + side;
+    }
+    if (positive > 0 && negative > 0) continue;  // the line passes by
+    if (positive < 3 && negative < 3) return false;
+    const I depth = Determinant(v[0], v[1], v[2]);
+    const int sense = positive == 3 ? 1 : -1;
+    if (ContainsZero(depth)) return false;
+    if (IsPositive(depth) == (sense > 0)) winding += sense;
+  }
+  return winding == 0;
+}
+
+}  // namespace cguide::check

@@ -1,0 +1,104 @@
+#include "cguide/verify/edge_audit.h"
+
+#include <mutex>
+#include <vector>
+
+namespace cguide::verify {
+
+struct EdgeAuditor::State {
+  explicit State(const numeric::World& given) : world(given), collision(given), stability(given) {
+    // Under kNearest nothing continuous holds, and the checker takes no such model.
+    if (given.model().contact.model == ContactModel::kSites) checker.emplace(given.model());
+  }
+  const numeric::World& world;
+  EdgeWorkspace collision;
+  StabilityEdgeWorkspace stability;
+  std::optional<check::Checker> checker;
+};
+
+EdgeAuditor::EdgeAuditor(const numeric::World& world) : state_(std::make_unique<State>(world)) {}
+EdgeAuditor::~EdgeAuditor() = default;
+EdgeAuditor::EdgeAuditor(EdgeAuditor&&) noexcept = default;
+EdgeAuditor& EdgeAuditor::operator=(EdgeAuditor&&) noexcept = default;
+
+Verdict VerdictOf(const EdgeFinding& edge) {
+  if (edge.collision.verdict == Verdict::kFails || edge.stability.verdict == Verdict::kFails) {
+    return Verdict::kFails;
+  }
+  return edge.proof ? Verdict::kHolds : Verdict::kUndecided;
+}
+
+EdgeFinding EdgeAuditor::Audit(int index, const Edge& edge) {
+  State& x = *state_;
+  EdgeFinding finding;
+  EdgeEvidence evidence;
+  EdgeCollisionOptions collision;
+  EdgeStabilityOptions stability;
+  collision.evidence = stability.evidence = &evidence;
+  finding.collision = DecideEdgeCollision(x.world, edge, collision, &x.collision);
+  finding.stability.verdict = Verdict::kUndecided;
+  if (finding.collision.verdict != Verdict::kFails) {
+    finding.stability = DecideEdgeStability(x.world, edge, stability, &x.stability);
+  }
+  finding.done = true;
+  if (finding.collision.verdict != Verdict::kHolds ||
+      finding.stability.verdict != Verdict::kHolds) {
+    return finding;
+  }
+  check::EdgeProof proof = AssembleProof(index, evidence);
+  finding.refusal = x.checker->CheckEdge(edge, proof);
+  if (finding.refusal.empty()) finding.proof = std::move(proof);
+  return finding;
+}
+
+namespace {
+
+struct Workspaces {
+  explicit Workspaces(const numeric::World& world) : collision(world), stability(world) {}
+  EdgeWorkspace collision;
+  StabilityEdgeWorkspace stability;
+};
+
+/** Lends each caller workspaces of its own. */
+class Pool {
+ public:
+  explicit Pool(const numeric::World& world) : world_(world) {}
+
+  std::unique_ptr<Workspaces> Take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<Workspaces>(world_);
+    std::unique_ptr<Workspaces> taken = std::move(free_.back());
+    free_.pop_back();
+    return taken;
+  }
+  void Return(std::unique_ptr<Workspaces> workspaces) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(workspaces));
+  }
+  const numeric::World& world() const { return world_; }
+
+ private:
+  const numeric::World& world_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Workspaces>> free_;
+};
+
+}  // namespace
+
+EdgeOracle MakeWholeOracle(const numeric::World& world, const WholeOracleOptions& options) {
+  auto pool = std::make_shared<Pool>(world);
+  return [pool, options](const Edge& edge) {
+    std::unique_ptr<Workspaces> x = pool->Take();
+    EdgeCollisionOptions collision;
+    EdgeStabilityOptions stability;
+    collision.max_leaves = stability.max_leaves = options.max_leaves;
+    Verdict verdict = DecideEdgeCollision(pool->world(), edge, collision, &x->collision).verdict;
+    if (verdict == Verdict::kHolds) {
+      verdict = DecideEdgeStability(pool->world(), edge, stability, &x->stability).verdict;
+    }
+    pool->Return(std::move(x));
+    return verdict;
+  };
+}
+
+}  // namespace cguide::verify

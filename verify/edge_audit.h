@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cguide/exact/core/path.h"
+#include "cguide/numeric/world.h"
+#include "cguide/verify/check/check.h"
+#include "cguide/verify/edge_collision.h"
+#include "cguide/verify/edge_stability.h"
+
+namespace cguide::verify {
+
+/** What was decided of one whole edge, joint limits apart. */
+struct EdgeFinding {
+  bool done = false;  ///< false where the audit was interrupted before
+  EdgeCollision collision;
+  EdgeStability stability;  ///< not asked, kUndecided, where the edge collides
+  /** Where both hold and the checker (verify/check) accepted the evidence. */
+  std::optional<check::EdgeProof> proof;
+  std::string refusal;  ///< what the checker did not accept, where both hold
+};
+
+/** kHolds only where there is a proof. */
+Verdict VerdictOf(const EdgeFinding& edge);
+
+/** Decides edges and has what holds re-checked. Scratch of one thread, bound to one World, which
+ must outlive it. */
+class EdgeAuditor {
+ public:
+  explicit EdgeAuditor(const numeric::World& world);
+  ~EdgeAuditor();
+  EdgeAuditor(EdgeAuditor&&) noexcept;
+  EdgeAuditor& operator=(EdgeAuditor&&) noexcept;
+
+  /** `index` is the edge's number in its proof. @throws Error where the edge does not fit. */
+  EdgeFinding Audit(int index, const Edge& edge);
+
+  struct State;
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+struct WholeOracleOptions {
+  /** The planner gives up on an edge sooner than an audit does; undecided counts as no edge. */
+  long max_leaves = 300;
+};
+
+/** An edge oracle that holds only where every real s of the edge is in C_guide. It decides with the
+ certifier's bounds and leaves the checker to the audit of the finished guide. Safe to call from
+ several threads; `world` must outlive it. */
+EdgeOracle MakeWholeOracle(const numeric::World& world, const WholeOracleOptions& options);
+
+}  // namespace cguide::verify
