@@ -112,6 +112,10 @@ void Writer::Write(const ContactEvidence& contact) {
     }
     *this << "}";
   }
+  if (contact.ridge) {
+    *this << ",\"ridge\":";
+    List(contact.ridge->corners, [this](int i) { *this << i; });
+  }
   if (!contact.apart.empty()) {
     *this << ",\"apart\":";
     List(contact.apart, [this](const Separation& s) {

@@ -365,6 +365,10 @@ EdgeCollision Decider::Run() {
   while (!x_.tasks.empty()) {
     Task task = std::move(x_.tasks.front());
     x_.tasks.pop_front();
+    if (task.leaf.half > options_.widest) {
+      Split(task.leaf, std::move(task.items));
+      continue;
+    }
     ++result_.leaves;
     EvaluateEdge<kDegree>(world_.tree(), edge_, task.leaf, &x_.state);
     std::vector<Item> open;

@@ -14,6 +14,7 @@ struct EdgeCollisionOptions {
    kUndecided. */
   double shortest = 0x1p-30;
   long max_leaves = 20000;           ///< likewise
+  double widest = 0.5;               ///< leaves of a greater half length are halved unseen
   EdgeEvidence* evidence = nullptr;  ///< takes the planes of a proof, where given
 };
 

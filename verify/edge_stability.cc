@@ -2,13 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <vector>
 
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/membership.h"
-#include "cguide/verify/kept_contact_internal.h"
+#include "cguide/verify/leaf_balance_internal.h"
 
 namespace cguide::verify {
 
@@ -23,7 +24,8 @@ struct StabilityEdgeWorkspace::Scratch {
   ContactKeeper keeper;
   TaylorState<kDegree> state;
   std::vector<KeptContact> kept;
-  std::vector<numeric::Contact> usable;  ///< those of the middle that are kept, same order
+  std::vector<Vector3d> arms;  ///< of the kept contacts at the middle
+  BalanceProposer proposer;
   std::deque<Leaf> leaves;
 };
 
@@ -62,9 +64,10 @@ bool IsAdmissible(const KeptContact& contact, const Vector3d& u) {
 
 /** A balance over a leaf: directions, weights and arms; the first six are the basis. */
 struct LeafBalance {
+  static constexpr int kCapacity = 12;
   int size = 0;
-  MovingWrench wrench[numeric::ForceWitness::kCapacity];
-  Model2 weight[numeric::ForceWitness::kCapacity];
+  MovingWrench wrench[kCapacity];
+  Model2 weight[kCapacity];
 };
 
 /** v - A(t) lambda(t). */
@@ -84,6 +87,11 @@ Model2 RowTimes(const Matrix6d& R, int a, const Model2 (&x)[6]) {
   return sum;
 }
 
+/** Places of weights in certificates: shares of the load of about 1e-7. */
+int PlacesOf(const Vector3d& v_f) {
+  return std::clamp(7 - static_cast<int>(std::ceil(std::log10(v_f.norm()))), 0, 15);
+}
+
 /** Puts the constant and the linear part of the residual on the basis; a proposal like all weights.
  */
 void CorrectWeights(const Matrix6d& R, const Vector3d& v_f, LeafBalance* balance) {
@@ -94,6 +102,12 @@ void CorrectWeights(const Matrix6d& R, const Vector3d& v_f, LeafBalance* balance
     for (int i = 0; i < 6; ++i) c[i] = residual[i].c[part];
     const Vector6d step = R * c;
     for (int j = 0; j < 6; ++j) balance->weight[j].c[part] += step[j];
+  }
+  const int places = PlacesOf(v_f);
+  for (int j = 0; j < 6; ++j) {
+    for (int part = 0; part <= 1; ++part) {
+      balance->weight[j].c[part] = ShortNumber(balance->weight[j].c[part], places);
+    }
   }
 }
 
@@ -138,8 +152,9 @@ class Decider {
   Verdict TestMiddle(const Leaf& leaf);
   void KeepContacts(const Leaf& leaf);
   bool HoldsOver(const Leaf& leaf);
-  bool Balances(const numeric::ForceWitness& forces);
-  void Note(const numeric::ForceWitness& forces, const LeafBalance& balance);
+  bool Balances();
+  void Split(const Leaf& leaf);
+  void Note(const std::vector<ProposedForce>& forces, const LeafBalance& balance);
 
   const World& world_;
   const Edge& edge_;
@@ -192,31 +207,31 @@ Verdict Decider::TestMiddle(const Leaf& leaf) {
 void Decider::KeepContacts(const Leaf& leaf) {
   EvaluateEdge<kDegree>(world_.tree(), edge_, leaf, &x_.state);
   x_.kept.clear();
-  x_.usable.clear();
   for (const numeric::Contact& contact : x_.guide.contacts) {
     KeptContact kept;
     if (!contact.certain || !x_.keeper.Keep(x_.state, contact, &kept)) continue;
-    x_.kept.push_back(kept);
-    x_.usable.push_back(contact);
-    x_.usable.back().friction = kept.friction;
-    x_.usable.back().n_W = kept.n_W;
-    x_.usable.back().normal_error = kept.normal_error;
+    x_.kept.push_back(std::move(kept));
   }
 }
 
-bool Decider::Balances(const numeric::ForceWitness& forces) {
-  if (forces.size < 6) return false;
+bool Decider::Balances() {
   const Vector3d v_f = -world_.tree().mass * world_.model().gravity;
+  x_.arms.clear();
+  for (const KeptContact& contact : x_.kept) {
+    x_.arms.push_back((contact.force_point.c[0] - x_.state.com_W.c[0]).head<3>());
+  }
+  const std::vector<ProposedForce>& forces = x_.proposer.Propose(x_.kept, x_.arms, v_f);
+  if (forces.size() < 6) return false;
   LeafBalance balance;
-  balance.size = forces.size;
+  balance.size = static_cast<int>(forces.size());
   Matrix6d B;
-  for (int j = 0; j < forces.size; ++j) {
-    const numeric::WitnessForce& force = forces.force[j];
+  for (int j = 0; j < balance.size; ++j) {
+    const ProposedForce& force = forces[j];
     const KeptContact& contact = x_.kept[force.contact];
     if (!IsAdmissible(contact, force.u_W)) return false;
     const Vector2 arm = contact.force_point - x_.state.com_W;
     balance.wrench[j] = WrenchOf(arm, force.u_W);
-    balance.weight[j] = Constant<kDegree>(force.weight);
+    balance.weight[j] = Constant<kDegree>(ShortNumber(force.weight, PlacesOf(v_f)));
     if (j >= 6) continue;
     for (int i = 0; i < 6; ++i) B(i, j) = balance.wrench[j].row[i].c[0];
   }
@@ -231,12 +246,12 @@ bool Decider::Balances(const numeric::ForceWitness& forces) {
 }
 
 // Only contacts that bear a force are written.
-void Decider::Note(const numeric::ForceWitness& forces, const LeafBalance& balance) {
+void Decider::Note(const std::vector<ProposedForce>& forces, const LeafBalance& balance) {
   if (!options_.evidence) return;
   check::Balance& noted = options_.evidence->nodes[leaf_].balance.emplace();
   std::vector<int> number(x_.kept.size(), -1);
-  for (int j = 0; j < forces.size; ++j) {
-    const numeric::WitnessForce& force = forces.force[j];
+  for (int j = 0; j < balance.size; ++j) {
+    const ProposedForce& force = forces[j];
     if (number[force.contact] < 0) {
       number[force.contact] = static_cast<int>(noted.contacts.size());
       noted.contacts.push_back(x_.kept[force.contact].evidence);
@@ -255,10 +270,14 @@ bool Decider::HoldsOver(const Leaf& leaf) {
     }
     return true;
   }
-  numeric::StabilityQuery query = PlacedQuery(world_, x_.guide);
-  query.contacts = x_.usable;
-  const numeric::StabilityAnswer answer = TryStability(query, &x_.guide.stability);
-  return answer.verdict == Verdict::kHolds && Balances(answer.forces);
+  return Balances();
+}
+
+void Decider::Split(const Leaf& leaf) {
+  if (options_.evidence) options_.evidence->splits.insert(leaf);
+  const double half = 0.5 * leaf.half;
+  x_.leaves.push_back({leaf.middle - half, half});
+  x_.leaves.push_back({leaf.middle + half, half});
 }
 
 EdgeStability Decider::Run() {
@@ -272,6 +291,10 @@ EdgeStability Decider::Run() {
     const Leaf leaf = x_.leaves.front();
     x_.leaves.pop_front();
     leaf_ = leaf;
+    if (leaf.half > options_.widest) {
+      Split(leaf);
+      continue;
+    }
     ++result_.leaves;
     const Verdict middle = TestMiddle(leaf);
     if (middle == Verdict::kFails) {
@@ -290,10 +313,7 @@ EdgeStability Decider::Run() {
                                                  : "the middle of the leaf is not decided";
       return result_;
     }
-    if (options_.evidence) options_.evidence->splits.insert(leaf);
-    const double half = 0.5 * leaf.half;
-    x_.leaves.push_back({leaf.middle - half, half});
-    x_.leaves.push_back({leaf.middle + half, half});
+    Split(leaf);
   }
   return result_;
 }

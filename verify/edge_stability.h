@@ -12,6 +12,7 @@ namespace cguide::verify {
 struct EdgeStabilityOptions {
   double shortest = 0x1p-30;  ///< as in EdgeCollisionOptions
   long max_leaves = 4000;
+  double widest = 0.5;               ///< likewise
   EdgeEvidence* evidence = nullptr;  ///< takes contacts and forces of a proof, where given
 };
 

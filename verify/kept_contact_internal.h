@@ -66,6 +66,22 @@ class ContactKeeper {
   bool KeepOnConvex(const MovingSite& site, const numeric::Contact& contact, int piece,
                     KeptContact* kept);
 
+  /** On a corner v or an edge with ends a, b of a convex piece's core: w = x - v, or x - a without
+   its part along b - a, is the way from the core's closest point as long as no other corner p has
+   w.(p - a) > 0 and the foot stays on the edge. Bounds on how w turns do not count sliding along
+   the edge nor rising. Other pieces as in L. */
+  bool KeepOnRidge(const MovingSite& site, const numeric::Contact& contact, int piece,
+                   KeptContact* kept);
+
+  /** Where other pieces must not be. */
+  struct Surroundings {
+    Eigen::Vector3d lower, upper;  ///< box of the contact's point
+    double seam = 0;               ///< how far from it others keep
+    double farthest = 0;           ///< distance of the site from it, at most
+  };
+  bool FinishNear(const MovingSite& site, int piece, const Surroundings& around,
+                  const check::ContactEvidence& evidence, KeptContact* kept);
+
   bool FindFlat(const numeric::Contact& contact, Flat* flat) const;
   int FindConvex(const numeric::Contact& contact) const;
   bool InFace(const numeric::ObstaclePiece& piece, int face, const Vector2& x, double margin) const;

@@ -52,12 +52,21 @@ struct NearEvidence {
   std::vector<std::pair<int, double>> corners;    ///< of a hull: weights >= 0 of its vertices
 };
 
+/** The corner, or the two ends of the edge, of a convex piece's core on which the site's closest
+ point stays. Corners of a box count x fastest, then y, then z, the negative side first; those of a
+ capsule are its lower and upper end, that of a sphere is its centre, those of a hull its vertices.
+ */
+struct RidgeEvidence {
+  std::vector<int> corners;  ///< one or two
+};
+
 /** Why a site keeps one contact with a piece over a node. */
 struct ContactEvidence {
   int site = -1;
   int piece = -1;
-  std::optional<FlatEvidence> flat;  ///< one of the two
+  std::optional<FlatEvidence> flat;  ///< one of the three
   std::optional<NearEvidence> near;
+  std::optional<RidgeEvidence> ridge;
   /** Pieces that keep away from the contact's point, with planes; others lie behind the face, or
    are seen to be apart without help. `shape` is unused. */
   std::vector<Separation> apart;

@@ -83,14 +83,26 @@ NearEvidence ReadNear(const View& view) {
   return near;
 }
 
+RidgeEvidence ReadRidge(const View& view) {
+  RidgeEvidence ridge;
+  if (view.Size() < 1 || view.Size() > 2) view.Fail("one or two corners are expected here");
+  for (std::size_t i = 0; i < view.Size(); ++i) {
+    ridge.corners.push_back(view.At(i).Index(1'000'000'000));
+  }
+  return ridge;
+}
+
 ContactEvidence ReadContact(const View& view, const Counts& counts) {
-  view.AllowKeys({"site", "piece", "flat", "near", "apart"});
+  view.AllowKeys({"site", "piece", "flat", "near", "ridge", "apart"});
   ContactEvidence contact;
   contact.site = view.Get("site").Index(counts.sites);
   contact.piece = view.Get("piece").Index(counts.pieces.size());
-  if (view.Has("flat") == view.Has("near")) view.Fail("one of \"flat\" and \"near\" belongs here");
+  if (view.Has("flat") + view.Has("near") + view.Has("ridge") != 1) {
+    view.Fail("one of \"flat\", \"near\" and \"ridge\" belongs here");
+  }
   if (view.Has("flat")) contact.flat = ReadFlat(view.Get("flat"), counts.pieces[contact.piece]);
   if (view.Has("near")) contact.near = ReadNear(view.Get("near"));
+  if (view.Has("ridge")) contact.ridge = ReadRidge(view.Get("ridge"));
   if (!view.Has("apart")) return contact;
   const View list = view.Get("apart");
   for (std::size_t i = 0; i < list.Size(); ++i) {

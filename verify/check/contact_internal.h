@@ -40,9 +40,21 @@ class ContactChecker {
       : prepared_(prepared), model_(*prepared.model), links_(links), cache_(*cache) {}
 
   /** The contact, or nothing where the evidence does not carry it. */
-  std::optional<KeptContact<I>> Keep(const ContactEvidence& evidence) const;
+  std::optional<KeptContact<I>> Keep(const ContactEvidence& evidence);
+
+  /** Why the last evidence was not accepted. */
+  const std::string& reason() const { return reason_; }
 
  private:
+  bool DeclinePiece(int piece) {
+    reason_ = "piece " + std::to_string(piece) + " may come nearer";
+    return false;
+  }
+  std::nullopt_t Decline(std::string why) {
+    reason_ = std::move(why);
+    return std::nullopt;
+  }
+
   struct Flat {
     IntervalVector<I> n;
     I h;
@@ -57,16 +69,22 @@ class ContactChecker {
   };
 
   std::optional<KeptContact<I>> KeepOnFlat(const ContactEvidence& evidence,
-                                           const MovingSite<I>& site) const;
+                                           const MovingSite<I>& site);
   std::optional<KeptContact<I>> KeepNear(const ContactEvidence& evidence,
-                                         const MovingSite<I>& site) const;
+                                         const MovingSite<I>& site);
+  std::optional<KeptContact<I>> KeepOnRidge(const ContactEvidence& evidence,
+                                            const MovingSite<I>& site);
+  bool IsRidge(const PlacedSet<I>& placed, const std::vector<int>& corners,
+               const PolynomialVector<I>& x, PolynomialVector<I>* w) const;
+  bool OthersStayAway(const ContactEvidence& evidence, const Guard& seam, const Guard& nearer,
+                      double* friction);
   std::optional<Flat> FlatOf(const ContactEvidence& evidence) const;
   bool IsOverFace(const ContactEvidence& evidence, const Flat& flat, const MovingSite<I>& site,
                   const PolynomialVector<I>& y) const;
   bool IsOverTriangles(const ContactEvidence& evidence, const Flat& flat,
                        const PolynomialVector<I>& y) const;
   bool OthersAllow(const ContactEvidence& evidence, const Flat& flat, const Guard& guard,
-                   double* friction) const;
+                   double* friction);
   bool IsAway(const Guard& guard, int piece, const std::vector<Plane>& planes) const;
   bool IsAway(const Guard& guard, const PlacedMesh<I>& mesh, const PlacedTriangle<I>& triangle,
               const std::vector<Plane>& planes) const;
@@ -92,6 +110,7 @@ class ContactChecker {
   const Model& model_;
   const std::vector<MovingPose<I>>& links_;
   BehindCache& cache_;
+  std::string reason_;
 };
 
 template <typename I>
@@ -273,7 +292,7 @@ bool ContactChecker<I>::IsOverFace(const ContactEvidence& evidence, const Flat& 
 
 template <typename I>
 bool ContactChecker<I>::OthersAllow(const ContactEvidence& evidence, const Flat& flat,
-                                    const Guard& guard, double* friction) const {
+                                    const Guard& guard, double* friction) {
   for (int p = 0; p < static_cast<int>(prepared_.obstacles.size()); ++p) {
     const Obstacle<I>& obstacle = prepared_.obstacles[p];
     const bool own_primitive = p == evidence.piece && evidence.flat->triangles.empty();
@@ -282,10 +301,10 @@ bool ContactChecker<I>::OthersAllow(const ContactEvidence& evidence, const Flat&
     if (obstacle.mesh) {
       for (int t = 0; t < static_cast<int>(obstacle.mesh->triangles.size()); ++t) {
         if (IsAway(guard, *obstacle.mesh, obstacle.mesh->triangles[t], planes)) continue;
-        if (!LiesBehind(flat, p, t)) return false;
+        if (!LiesBehind(flat, p, t)) return DeclinePiece(p);
       }
     } else if (!LiesBehind(flat, p, -1)) {
-      return false;
+      return DeclinePiece(p);
     }
     *friction = std::min(*friction, model_.objects[obstacle.object].friction);
   }
@@ -296,17 +315,19 @@ bool ContactChecker<I>::OthersAllow(const ContactEvidence& evidence, const Flat&
 // pieces every point within the seam of the foot is behind the plane and so no nearer.
 template <typename I>
 std::optional<KeptContact<I>> ContactChecker<I>::KeepOnFlat(const ContactEvidence& evidence,
-                                                            const MovingSite<I>& site) const {
+                                                            const MovingSite<I>& site) {
   const std::optional<Flat> flat = FlatOf(evidence);
-  if (!flat) return std::nullopt;
+  if (!flat) return Decline("the piece has no such face");
   const Polynomial<I> d = Dot(flat->n, site.x) - Polynomial<I>(flat->h);
   const I lowest = LowerBound(d), r(site.radius);
-  if (!IsPositive(lowest - (r - I(site.skin)))) return std::nullopt;
-  if (!evidence.flat->triangles.empty() && !IsPositive(lowest)) return std::nullopt;
-  if (!IsNegative(UpperBound(d) - (r + I(model_.contact.epsilon)))) return std::nullopt;
+  if (!IsPositive(lowest - (r - I(site.skin)))) return Decline("it may be too near");
+  if (!evidence.flat->triangles.empty() && !IsPositive(lowest))
+    return Decline("it may be too near");
+  if (!IsNegative(UpperBound(d) - (r + I(model_.contact.epsilon))))
+    return Decline("it may be too far");
   PolynomialVector<I> y;
   for (int i = 0; i < 3; ++i) y[i] = site.x[i] - flat->n[i] * d;
-  if (!IsOverFace(evidence, *flat, site, y)) return std::nullopt;
+  if (!IsOverFace(evidence, *flat, site, y)) return Decline("its foot may leave the face");
   KeptContact<I> kept{flat->n, I(0.0),
                       model_.objects[prepared_.obstacles[evidence.piece].object].friction, site.x};
   const Guard guard = MakeGuard(y, I(model_.contact.seam));
@@ -360,16 +381,39 @@ I ContactChecker<I>::Excess(const PlacedSet<I>& placed, const IntervalVector<I>&
   return Upper(excess);
 }
 
+// Pieces beyond the seam of the contact's point do not matter; those that are never as near to the
+// site as it cannot own it.
+template <typename I>
+bool ContactChecker<I>::OthersStayAway(const ContactEvidence& evidence, const Guard& seam,
+                                       const Guard& nearer, double* friction) {
+  for (int p = 0; p < static_cast<int>(prepared_.obstacles.size()); ++p) {
+    const Obstacle<I>& other = prepared_.obstacles[p];
+    const std::vector<Plane>& planes = PlanesFor(evidence, p);
+    if (p == evidence.piece || IsAway(seam, p, planes)) continue;
+    if (other.mesh) {
+      for (const PlacedTriangle<I>& t : other.mesh->triangles) {
+        if (!IsAway(seam, *other.mesh, t, planes) && !IsAway(nearer, *other.mesh, t, planes)) {
+          return DeclinePiece(p);
+        }
+      }
+    } else if (!IsAway(nearer, p, planes)) {
+      return DeclinePiece(p);
+    }
+    *friction = std::min(*friction, model_.objects[other.object].friction);
+  }
+  return true;
+}
+
 // y and w are those of the core; the piece's point is y + ball n, its distance |w| - ball
 // (FORMAT.md, lemma 7).
 template <typename I>
 std::optional<KeptContact<I>> ContactChecker<I>::KeepNear(const ContactEvidence& evidence,
-                                                          const MovingSite<I>& site) const {
+                                                          const MovingSite<I>& site) {
   const Obstacle<I>& obstacle = prepared_.obstacles[evidence.piece];
-  if (!obstacle.convex) return std::nullopt;
+  if (!obstacle.convex) return Decline("the piece is not convex");
   const PlacedSet<I>& placed = *obstacle.convex;
   const auto y_P = PointOf(*evidence.near, *obstacle.piece);
-  if (!y_P) return std::nullopt;
+  if (!y_P) return Decline("the point is not of the piece");
   const IntervalVector<I> y0 = Apply(placed.X, *y_P);
   IntervalVector<I> x0, away;
   for (int i = 0; i < 3; ++i) {
@@ -380,8 +424,8 @@ std::optional<KeptContact<I>> ContactChecker<I>::KeepNear(const ContactEvidence&
   const I step = Upper(Norm(away)), spread = Upper(step + Sqrt(Excess(placed, *y_P, w0)));
   const I length = Norm(w0), ball(placed.set.radius), r(site.radius);
   const I nearest = Lower(length) - spread - ball, farthest = Upper(length) + spread - ball;
-  if (!IsPositive(nearest - r) || !IsPositive(nearest)) return std::nullopt;
-  if (!IsNegative(farthest - r - I(model_.contact.epsilon))) return std::nullopt;
+  if (!IsPositive(nearest - r) || !IsPositive(nearest)) return Decline("it may be too near");
+  if (!IsNegative(farthest - r - I(model_.contact.epsilon))) return Decline("it may be too far");
   KeptContact<I> kept{Normalized(w0), Upper(I(2.0) * spread * Inverse(Lower(length))),
                       model_.objects[obstacle.object].friction, site.x};
   PolynomialVector<I> surface, center;
@@ -392,26 +436,73 @@ std::optional<KeptContact<I>> ContactChecker<I>::KeepNear(const ContactEvidence&
   }
   const Guard seam = MakeGuard(surface, Upper(I(model_.contact.seam) + spread + ball * kept.error));
   const Guard nearer = MakeGuard(center, Upper(step + farthest));
-  for (int p = 0; p < static_cast<int>(prepared_.obstacles.size()); ++p) {
-    const Obstacle<I>& other = prepared_.obstacles[p];
-    const std::vector<Plane>& planes = PlanesFor(evidence, p);
-    if (p == evidence.piece || IsAway(seam, p, planes)) continue;
-    if (other.mesh) {
-      for (const PlacedTriangle<I>& t : other.mesh->triangles) {
-        if (!IsAway(seam, *other.mesh, t, planes) && !IsAway(nearer, *other.mesh, t, planes)) {
-          return std::nullopt;
-        }
-      }
-    } else if (!IsAway(nearer, p, planes)) {
-      return std::nullopt;
-    }
-    kept.friction = std::min(kept.friction, model_.objects[other.object].friction);
+  if (!OthersStayAway(evidence, seam, nearer, &kept.friction)) return std::nullopt;
+  return kept;
+}
+
+/** Sets w = x - y for y the corner, or the foot on the line through both corners, and says whether
+ y is the core's closest point for every t: it is in the core, and w.(z - y) <= 0 for all z of it.
+ */
+template <typename I>
+bool ContactChecker<I>::IsRidge(const PlacedSet<I>& placed, const std::vector<int>& corners,
+                                const PolynomialVector<I>& x, PolynomialVector<I>* w) const {
+  const int count = static_cast<int>(placed.corners_W.size());
+  if (std::any_of(corners.begin(), corners.end(), [&](int c) { return c >= count; })) return false;
+  const IntervalVector<I>& a = placed.corners_W[corners[0]];
+  for (int i = 0; i < 3; ++i) (*w)[i] = x[i] - Polynomial<I>(a[i]);
+  if (corners.size() == 2) {
+    const IntervalVector<I> e = Minus(placed.corners_W[corners[1]], a);
+    const Polynomial<I> along = Inverse(SquaredNorm(e)) * Dot(e, *w);
+    if (!IsNonNegative(LowerBound(along))) return false;
+    if (!IsNonNegative(I(1.0) - UpperBound(along))) return false;
+    for (int i = 0; i < 3; ++i) (*w)[i] = (*w)[i] - e[i] * along;
   }
+  for (int c = 0; c < count; ++c) {
+    if (std::find(corners.begin(), corners.end(), c) != corners.end()) continue;
+    const I rise = UpperBound(Dot(Minus(placed.corners_W[c], a), *w));
+    if (!IsNonNegative(-rise)) return false;
+  }
+  return true;
+}
+
+// Of the core's w, n = w/|w|; the piece's distance is |w| - ball. With l <= w.n0 and |w - (w.n0)
+// n0|
+// <= p the angle between w and n0 has a tangent of at most p/l.
+template <typename I>
+std::optional<KeptContact<I>> ContactChecker<I>::KeepOnRidge(const ContactEvidence& evidence,
+                                                             const MovingSite<I>& site) {
+  const Obstacle<I>& obstacle = prepared_.obstacles[evidence.piece];
+  if (!obstacle.convex) return Decline("the piece is not convex");
+  PolynomialVector<I> w;
+  if (!IsRidge(*obstacle.convex, evidence.ridge->corners, site.x, &w)) {
+    return Decline("the closest point may leave the corner or edge");
+  }
+  KeptContact<I> kept{{}, I(0.0), model_.objects[obstacle.object].friction, site.x};
+  for (int i = 0; i < 3; ++i) kept.n[i] = I(w[i].c[0].Middle());
+  kept.n = Normalized(kept.n);
+  const Polynomial<I> straight = Dot(kept.n, w);
+  const I least = LowerBound(straight), most = UpperBound(straight);
+  IntervalVector<I> across;
+  for (int i = 0; i < 3; ++i) across[i] = Magnitude(RangeOf(w[i] - kept.n[i] * straight));
+  const I bend = Upper(Norm(across)), ball(obstacle.convex->set.radius), r(site.radius);
+  const I farthest = Upper(Norm(IntervalVector<I>{most, bend, I(0.0)})) - ball;
+  if (!IsPositive(least) || !IsPositive(least - ball - r)) return Decline("it may be too near");
+  if (!IsNegative(farthest - r - I(model_.contact.epsilon))) return Decline("it may be too far");
+  kept.error = Upper(bend * Inverse(least));
+  PolynomialVector<I> surface;
+  for (int i = 0; i < 3; ++i) {
+    surface[i] = site.x[i] - w[i];
+    surface[i].c[0] = surface[i].c[0] + ball * kept.n[i];
+    kept.point[i].c[0] = kept.point[i].c[0] - r * kept.n[i] + PlusMinus(r * kept.error);
+  }
+  const Guard seam = MakeGuard(surface, Upper(I(model_.contact.seam) + ball * kept.error));
+  const Guard nearer = MakeGuard(site.x, Upper(farthest));
+  if (!OthersStayAway(evidence, seam, nearer, &kept.friction)) return std::nullopt;
   return kept;
 }
 
 template <typename I>
-std::optional<KeptContact<I>> ContactChecker<I>::Keep(const ContactEvidence& evidence) const {
+std::optional<KeptContact<I>> ContactChecker<I>::Keep(const ContactEvidence& evidence) {
   const Site& site = model_.sites[evidence.site];
   const int body = model_.robot.links[site.link].body;
   const auto& allowed = model_.contact.bodies;
@@ -420,6 +511,7 @@ std::optional<KeptContact<I>> ContactChecker<I>::Keep(const ContactEvidence& evi
   const MovingSite<I> moving{Apply(links_[site.link], Lifted<I>(site.x_L)), site.radius,
                              prepared_.Skin(body, object)};
   if (evidence.flat) return KeepOnFlat(evidence, moving);
+  if (evidence.ridge) return KeepOnRidge(evidence, moving);
   return evidence.near ? KeepNear(evidence, moving) : std::nullopt;
 }
 

@@ -139,12 +139,12 @@ bool EdgeChecker<I>::Holds(const Obligation& o, const Node& node) {
 template <typename I>
 bool EdgeChecker<I>::CheckBalance(const Balance& balance, const Span& span) {
   const Model& model = *prepared_.model;
-  const ContactChecker<I> contacts(prepared_, links_, &behind_);
+  ContactChecker<I> contacts(prepared_, links_, &behind_);
   std::vector<KeptContact<I>> kept;
   for (const ContactEvidence& evidence : balance.contacts) {
     auto contact = contacts.Keep(evidence);
     if (!contact) {
-      return Refuse(span, "that site " + std::to_string(evidence.site) +
+      return Refuse(span, contacts.reason() + ": that site " + std::to_string(evidence.site) +
                               " keeps contact with piece " + std::to_string(evidence.piece));
     }
     kept.push_back(std::move(*contact));
