@@ -24,7 +24,7 @@ struct StabilityEdgeWorkspace::Scratch {
   ContactKeeper keeper;
   TaylorState<kDegree> state;
   std::vector<KeptContact> kept;
-  std::vector<Vector3d> arms;  ///< of the kept contacts at the middle
+  std::vector<Arm> arms;  ///< of the kept contacts
   BalanceProposer proposer;
   std::deque<Leaf> leaves;
 };
@@ -64,7 +64,7 @@ bool IsAdmissible(const KeptContact& contact, const Vector3d& u) {
 
 /** A balance over a leaf: directions, weights and arms; the first six are the basis. */
 struct LeafBalance {
-  static constexpr int kCapacity = 12;
+  static constexpr int kCapacity = 18;  ///< two bases beside the first
   int size = 0;
   MovingWrench wrench[kCapacity];
   Model2 weight[kCapacity];
@@ -153,6 +153,7 @@ class Decider {
   void KeepContacts(const Leaf& leaf);
   bool HoldsOver(const Leaf& leaf);
   bool Balances();
+  bool Carries(const std::vector<ProposedForce>& forces, const Vector3d& v_f);
   void Split(const Leaf& leaf);
   void Note(const std::vector<ProposedForce>& forces, const LeafBalance& balance);
 
@@ -218,10 +219,18 @@ bool Decider::Balances() {
   const Vector3d v_f = -world_.tree().mass * world_.model().gravity;
   x_.arms.clear();
   for (const KeptContact& contact : x_.kept) {
-    x_.arms.push_back((contact.force_point.c[0] - x_.state.com_W.c[0]).head<3>());
+    const Vector2 arm = contact.force_point - x_.state.com_W;
+    x_.arms.push_back({arm.c[0].head<3>(), arm.c[1].head<3>(), arm.c[2].head<3>()});
   }
-  const std::vector<ProposedForce>& forces = x_.proposer.Propose(x_.kept, x_.arms, v_f);
-  if (forces.size() < 6) return false;
+  for (const WeightKind kind : {WeightKind::kConstant, WeightKind::kAffine}) {
+    const auto& forces = x_.proposer.Propose(x_.kept, x_.arms, v_f, kind);
+    if (forces.empty()) return false;
+    if (Carries(forces, v_f)) return true;
+  }
+  return false;
+}
+
+bool Decider::Carries(const std::vector<ProposedForce>& forces, const Vector3d& v_f) {
   LeafBalance balance;
   balance.size = static_cast<int>(forces.size());
   Matrix6d B;
@@ -231,7 +240,8 @@ bool Decider::Balances() {
     if (!IsAdmissible(contact, force.u_W)) return false;
     const Vector2 arm = contact.force_point - x_.state.com_W;
     balance.wrench[j] = WrenchOf(arm, force.u_W);
-    balance.weight[j] = Constant<kDegree>(ShortNumber(force.weight, PlacesOf(v_f)));
+    balance.weight[j] = Constant<kDegree>(ShortNumber(force.w0, PlacesOf(v_f)));
+    balance.weight[j].c[1] = ShortNumber(force.w1, PlacesOf(v_f));
     if (j >= 6) continue;
     for (int i = 0; i < 6; ++i) B(i, j) = balance.wrench[j].row[i].c[0];
   }

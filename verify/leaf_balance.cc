@@ -1,5 +1,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include "cguide/verify/leaf_balance_internal.h"
@@ -31,8 +32,7 @@ double ShortNumber(double x, int places) {
 }
 
 // u.n >= |u| (C + error) on the sides of the pyramid, with room for the rounding of u.
-void BalanceProposer::AddDirections(int index, const KeptContact& contact, const Vector3d& arm,
-                                    const Effort& effort) {
+void BalanceProposer::AddDirections(int index, const KeptContact& contact, const Effort& effort) {
   const double cosine =
       1 / std::sqrt(1 + contact.friction * contact.friction) + 1.01 * contact.normal_error;
   const bool is_short = effort.is_short && cosine + kRoundingAngle < 1;
@@ -46,16 +46,22 @@ void BalanceProposer::AddDirections(int index, const KeptContact& contact, const
     if (is_short) {
       for (double& x : u) x = ShortNumber(x, kPlaces);
     }
-    directions_.push_back({index, u, 0});
-    columns_.push_back({arm, u});
+    directions_.push_back({index, u, 0, 0});
   }
+}
+
+void BalanceProposer::PlaceColumns(const std::vector<Arm>& arms, double t) {
+  columns_.clear();
+  for (const ProposedForce& d : directions_) columns_.push_back({arms[d.contact].At(t), d.u_W});
 }
 
 /** The six columns that pivoting takes first; moments count per metre. */
 bool BalanceProposer::ChooseBasis() {
-  if (columns_.size() < 6) return false;
-  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 256> A(6, std::min<int>(columns_.size(), 256));
-  for (int j = 0; j < A.cols(); ++j) A.col(j) = WrenchOf(columns_[j]);
+  constexpr int kMost = 256;
+  const int count = std::min(static_cast<int>(columns_.size()), kMost);
+  if (count < 6) return false;
+  Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMost> A(6, count);
+  for (int j = 0; j < count; ++j) A.col(j) = WrenchOf(columns_[j]);
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
   const auto& R = qr.matrixQR();
   if (!(std::abs(R(5, 5)) > 1e-6 * std::abs(R(0, 0)))) return false;
@@ -63,47 +69,70 @@ bool BalanceProposer::ChooseBasis() {
   return true;
 }
 
+/** Weights of all columns, those of the basis at least `share` of the load. */
+bool BalanceProposer::Weigh(const Vector3d& v_f, double share, std::vector<double>* weights) {
+  cone_.AssignForces(columns_);
+  Vector6d rest = Vector6d::Zero();
+  rest.head<3>() = v_f;
+  weights->assign(columns_.size(), 0);
+  for (const int j : basis_) {
+    (*weights)[j] = share * v_f.norm();
+    rest -= (*weights)[j] * WrenchOf(columns_[j]);
+  }
+  const auto answer = TryConeMembership(cone_, numeric::WrenchDemand(rest), &workspace_);
+  if (!answer || answer->where != exact::Membership::kInterior) return false;
+  for (int k = 0; k < 6; ++k) (*weights)[answer->basis[k]] += answer->weight[k];
+  return true;
+}
+
+/** The basis first, then whatever has weight at one of the ends. */
+void BalanceProposer::Collect(const std::vector<double>& from, const std::vector<double>& to) {
+  const auto add = [&](int j) {
+    ProposedForce force = directions_[j];
+    force.w0 = 0.5 * (from[j] + to[j]);
+    force.w1 = 0.5 * (to[j] - from[j]);
+    forces_.push_back(force);
+  };
+  for (const int j : basis_) add(j);
+  for (int j = 0; j < static_cast<int>(directions_.size()); ++j) {
+    const bool is_basis = std::find(basis_.begin(), basis_.end(), j) != basis_.end();
+    if (!is_basis && (from[j] > 0 || to[j] > 0)) add(j);
+  }
+}
+
+void BalanceProposer::Try(const std::vector<KeptContact>& contacts, const std::vector<Arm>& arms,
+                          const Vector3d& v_f, WeightKind kind, const Effort& effort) {
+  directions_.clear();
+  forces_.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    AddDirections(static_cast<int>(i), contacts[i], effort);
+  }
+  PlaceColumns(arms, 0);
+  if (!ChooseBasis()) return;
+  for (int round = 0; round < 3; ++round) {
+    const double share = std::ldexp(effort.share, -5 * round);
+    if (kind == WeightKind::kConstant) {
+      if (!Weigh(v_f, share, &from_)) continue;
+      Collect(from_, from_);
+      return;
+    }
+    PlaceColumns(arms, -1);
+    if (!Weigh(v_f, share, &from_)) continue;
+    PlaceColumns(arms, 1);
+    if (!Weigh(v_f, share, &to_)) continue;
+    Collect(from_, to_);
+    return;
+  }
+}
+
 const std::vector<ProposedForce>& BalanceProposer::Propose(const std::vector<KeptContact>& contacts,
-                                                           const std::vector<Vector3d>& arms,
-                                                           const Vector3d& v_f) {
+                                                           const std::vector<Arm>& arms,
+                                                           const Vector3d& v_f, WeightKind kind) {
   for (const Effort& effort : {Effort{4, true, 0x1p-4}, Effort{16, false, 0x1p-10}}) {
-    Try(contacts, arms, v_f, effort);
+    Try(contacts, arms, v_f, kind, effort);
     if (!forces_.empty()) break;
   }
   return forces_;
-}
-
-void BalanceProposer::Try(const std::vector<KeptContact>& contacts,
-                          const std::vector<Vector3d>& arms, const Vector3d& v_f,
-                          const Effort& effort) {
-  directions_.clear();
-  columns_.clear();
-  forces_.clear();
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    AddDirections(static_cast<int>(i), contacts[i], arms[i], effort);
-  }
-  if (!ChooseBasis()) return;
-  cone_.AssignForces(columns_);
-  const double load = v_f.norm();
-  for (int round = 0; round < 3; ++round) {
-    const double share = std::ldexp(effort.share, -5 * round);
-    Vector6d rest = Vector6d::Zero();
-    rest.head<3>() = v_f;
-    for (const int j : basis_) rest -= share * load * WrenchOf(columns_[j]);
-    const auto answer = TryConeMembership(cone_, numeric::WrenchDemand(rest), &workspace_);
-    if (!answer || answer->where != exact::Membership::kInterior) continue;
-    for (const int j : basis_) directions_[j].weight = share * load;
-    for (int k = 0; k < 6; ++k) directions_[answer->basis[k]].weight += answer->weight[k];
-    for (const int j : basis_) {
-      forces_.push_back(directions_[j]);
-      directions_[j].weight = 0;
-    }
-    for (int k = 0; k < 6; ++k) {
-      if (directions_[answer->basis[k]].weight > 0)
-        forces_.push_back(directions_[answer->basis[k]]);
-    }
-    return;
-  }
 }
 
 }  // namespace cguide::verify
