@@ -87,14 +87,15 @@ Model2 RowTimes(const Matrix6d& R, int a, const Model2 (&x)[6]) {
   return sum;
 }
 
-/** Places of weights in certificates: shares of the load of about 1e-7. */
-int PlacesOf(const Vector3d& v_f) {
-  return std::clamp(7 - static_cast<int>(std::ceil(std::log10(v_f.norm()))), 0, 15);
+/** Places of weights in certificates: shares of the load of about 1e-7, or all. */
+int PlacesOf(const Vector3d& v_f, Care care) {
+  const int digits = care == Care::kQuick ? 7 : 17;
+  return std::clamp(digits - static_cast<int>(std::ceil(std::log10(v_f.norm()))), 0, 17);
 }
 
 /** Puts the constant and the linear part of the residual on the basis; a proposal like all weights.
  */
-void CorrectWeights(const Matrix6d& R, const Vector3d& v_f, LeafBalance* balance) {
+void CorrectWeights(const Matrix6d& R, const Vector3d& v_f, int places, LeafBalance* balance) {
   Model2 residual[6];
   Residual(*balance, v_f, residual);
   for (int part = 0; part <= 1; ++part) {
@@ -103,7 +104,6 @@ void CorrectWeights(const Matrix6d& R, const Vector3d& v_f, LeafBalance* balance
     const Vector6d step = R * c;
     for (int j = 0; j < 6; ++j) balance->weight[j].c[part] += step[j];
   }
-  const int places = PlacesOf(v_f);
   for (int j = 0; j < 6; ++j) {
     for (int part = 0; part <= 1; ++part) {
       balance->weight[j].c[part] = ShortNumber(balance->weight[j].c[part], places);
@@ -153,7 +153,7 @@ class Decider {
   void KeepContacts(const Leaf& leaf);
   bool HoldsOver(const Leaf& leaf);
   bool Balances();
-  bool Carries(const std::vector<ProposedForce>& forces, const Vector3d& v_f);
+  bool Carries(const std::vector<ProposedForce>& forces, const Vector3d& v_f, int places);
   void Split(const Leaf& leaf);
   void Note(const std::vector<ProposedForce>& forces, const LeafBalance& balance);
 
@@ -222,15 +222,19 @@ bool Decider::Balances() {
     const Vector2 arm = contact.force_point - x_.state.com_W;
     x_.arms.push_back({arm.c[0].head<3>(), arm.c[1].head<3>(), arm.c[2].head<3>()});
   }
-  for (const WeightKind kind : {WeightKind::kConstant, WeightKind::kAffine}) {
-    const auto& forces = x_.proposer.Propose(x_.kept, x_.arms, v_f, kind);
-    if (forces.empty()) return false;
-    if (Carries(forces, v_f)) return true;
+  constexpr double kNarrow = 0x1p-5;
+  for (const Care care : {Care::kQuick, Care::kThorough}) {
+    if (care == Care::kThorough && leaf_.half > kNarrow) return false;
+    for (const WeightKind kind : {WeightKind::kConstant, WeightKind::kAffine}) {
+      const auto& forces = x_.proposer.Propose(x_.kept, x_.arms, v_f, kind, care);
+      if (forces.empty()) break;
+      if (Carries(forces, v_f, PlacesOf(v_f, care))) return true;
+    }
   }
   return false;
 }
 
-bool Decider::Carries(const std::vector<ProposedForce>& forces, const Vector3d& v_f) {
+bool Decider::Carries(const std::vector<ProposedForce>& forces, const Vector3d& v_f, int places) {
   LeafBalance balance;
   balance.size = static_cast<int>(forces.size());
   Matrix6d B;
@@ -240,8 +244,8 @@ bool Decider::Carries(const std::vector<ProposedForce>& forces, const Vector3d& 
     if (!IsAdmissible(contact, force.u_W)) return false;
     const Vector2 arm = contact.force_point - x_.state.com_W;
     balance.wrench[j] = WrenchOf(arm, force.u_W);
-    balance.weight[j] = Constant<kDegree>(ShortNumber(force.w0, PlacesOf(v_f)));
-    balance.weight[j].c[1] = ShortNumber(force.w1, PlacesOf(v_f));
+    balance.weight[j] = Constant<kDegree>(ShortNumber(force.w0, places));
+    balance.weight[j].c[1] = ShortNumber(force.w1, places);
     if (j >= 6) continue;
     for (int i = 0; i < 6; ++i) B(i, j) = balance.wrench[j].row[i].c[0];
   }
@@ -249,7 +253,7 @@ bool Decider::Carries(const std::vector<ProposedForce>& forces, const Vector3d& 
   if (!R.allFinite()) return false;
   // The real mass is that of the model; its rounding in `tree` scales all weights alike, and being
   // interior does not depend on the scale of v.
-  CorrectWeights(R, v_f, &balance);
+  CorrectWeights(R, v_f, places, &balance);
   if (!ProveBalance(R, v_f, balance)) return false;
   Note(forces, balance);
   return true;

@@ -48,6 +48,13 @@ ExactPlane ExactPlaneOf(const Model& model, const Geometry& g, const Flat& flat,
                         const exact::PreparedModel& prepared) {
   const int object = g.pieces[flat.piece].object;
   const int local = flat.piece - g.object_begin[object];
+  if (flat.triangle >= 0) {
+    const auto& mesh = std::get<exact::ExactMesh>(prepared.objects[object][local]);
+    const exact::Triangle& t = mesh.triangles.triangles[flat.triangle];
+    Vector3q n = exact::Cross(t[1] - t[0], t[2] - t[0]);
+    if (flat.side < 0) n = -n;
+    return {n, exact::Dot(n, t[0])};
+  }
   if (flat.face < 0) {
     const auto& halfspace = std::get<exact::ExactHalfspace>(prepared.objects[object][local]);
     return {halfspace.normal, halfspace.offset};
@@ -88,6 +95,18 @@ bool Behind(const ExactPlane& plane, const exact::ExactPiece& piece) {
   return m > 0 && exact::Scaled(m, half.normal) == plane.n && m * half.offset <= plane.h;
 }
 
+const numeric::BodySite* FindSite(const Geometry& g, const numeric::Contact& contact) {
+  for (const numeric::BodySites& body : g.sites) {
+    if (body.body != contact.body) continue;
+    for (const numeric::BodySite& site : body.sites) {
+      if (site.site == contact.site) return &site;
+    }
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 Vector3d LowerOf(const Vector2& x) {
   Vector3d lower;
   for (int i = 0; i < 3; ++i) lower[i] = LowerBound(Coordinate<kDegree>(x, i));
@@ -100,17 +119,6 @@ Vector3d UpperOf(const Vector2& x) {
   return upper;
 }
 
-const numeric::BodySite* FindSite(const Geometry& g, const numeric::Contact& contact) {
-  for (const numeric::BodySites& body : g.sites) {
-    if (body.body != contact.body) continue;
-    for (const numeric::BodySite& site : body.sites) {
-      if (site.site == contact.site) return &site;
-    }
-  }
-  return nullptr;
-}
-
-/** Whether the piece keeps farther from the box [lower, upper] than `distance`. */
 bool FartherThan(const ObstaclePiece& piece, const Vector3d& lower, const Vector3d& upper,
                  double distance) {
   const Vector3d center = 0.5 * (lower + upper);
@@ -118,20 +126,6 @@ bool FartherThan(const ObstaclePiece& piece, const Vector3d& lower, const Vector
       (0.5 * (upper - lower).norm() + distance) * kUp + 8 * kUnit * center.lpNorm<1>();
   return numeric::BallApart(center, radius, piece);
 }
-
-/** The core's point below y, in the piece's frame. */
-check::NearEvidence NearEvidenceOf(const Convex& s, const numeric::PointProjection& here) {
-  const Vector3d core = here.y - s.radius * here.n;
-  Vector3d y_P = s.R.transpose() * (core - s.c);
-  y_P = y_P.cwiseMax(-s.half).cwiseMin(s.half);
-  const double across = y_P.head<2>().norm();
-  if (s.kind == numeric::CoreKind::kCylinder && across > s.half[0] * (1 - 4 * kUnit)) {
-    y_P.head<2>() *= s.half[0] / across * (1 - 8 * kUnit);
-  }
-  return {y_P, {}};
-}
-
-}  // namespace
 
 ContactKeeper::ContactKeeper(const numeric::World& world)
     : world_(world), exact_(exact::PrepareModel(world.model())) {}
@@ -172,15 +166,16 @@ bool ContactKeeper::InFace(const ObstaclePiece& piece, int face, const Vector2& 
   return true;
 }
 
-bool ContactKeeper::LiesBehind(const Flat& flat, int piece) {
-  const auto [entry, is_new] = behind_.try_emplace({flat, piece}, false);
-  if (is_new) {
-    const Geometry& g = world_.geometry();
-    const int object = g.pieces[piece].object;
-    entry->second = Behind(ExactPlaneOf(world_.model(), g, flat, exact_),
-                           exact_.objects[object][piece - g.object_begin[object]]);
-  }
-  return entry->second;
+bool ContactKeeper::LiesBehind(const Flat& flat, int piece, int triangle) {
+  const auto [entry, is_new] = behind_.try_emplace({flat, piece, triangle}, false);
+  if (!is_new) return entry->second;
+  const Geometry& g = world_.geometry();
+  const int object = g.pieces[piece].object;
+  const exact::ExactPiece& asked = exact_.objects[object][piece - g.object_begin[object]];
+  const ExactPlane plane = ExactPlaneOf(world_.model(), g, flat, exact_);
+  if (triangle < 0) return entry->second = Behind(plane, asked);
+  const exact::Triangle& t = std::get<exact::ExactMesh>(asked).triangles.triangles[triangle];
+  return entry->second = Behind(plane, t[0]) && Behind(plane, t[1]) && Behind(plane, t[2]);
 }
 
 int ContactKeeper::FindConvex(const numeric::Contact& contact) const {
@@ -233,146 +228,15 @@ bool ContactKeeper::KeepOnFlat(const MovingSite& site, const numeric::Contact& c
       NoteAway(p, 0.5 * (site.lower + site.upper), reach + (site.upper - site.lower).norm(), kept);
       continue;
     }
-    if (!LiesBehind(flat, p)) return false;
+    const bool is_mesh = g.pieces[p].kind == PieceKind::kMesh;
+    const bool allowed =
+        is_mesh ? TrianglesAllow(flat, p, site.lower.array() - reach, site.upper.array() + reach)
+                : LiesBehind(flat, p, -1);
+    if (!allowed) return false;
     kept->friction = std::min(kept->friction, world_.model().objects[g.pieces[p].object].friction);
   }
   kept->n_W = plane.n;
   kept->normal_error = plane.normal_error;
-  SetForcePoint(site, kept);
-  return true;
-}
-
-bool ContactKeeper::KeepOnConvex(const MovingSite& site, const numeric::Contact& contact, int index,
-                                 KeptContact* kept) {
-  const Geometry& g = world_.geometry();
-  const ContactRules& rules = world_.model().contact;
-  const ObstaclePiece& piece = g.pieces[index];
-  const auto at = [&](const Convex& s) { return numeric::ProjectPoint(s, contact.x_W); };
-  const numeric::PointProjection here = at(piece.convex);
-  // The stored middle is as good a reference as the real one: `step` counts from it.
-  const double error = here.distance_error + here.y_error + site.step;
-  const double lowest = here.distance - error, highest = (here.distance + error) * kUp;
-  if (!(lowest > site.radius && lowest > 0 && highest < site.radius + rules.epsilon)) return false;
-  kept->friction = world_.model().objects[piece.object].friction;
-  const double ball = (rules.seam + error) * kUp + 8 * kUnit * contact.x_W.lpNorm<1>();
-  kept->evidence = {contact.site, index, {}, NearEvidenceOf(piece.convex, here), {}, {}};
-  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
-    const ObstaclePiece& other = g.pieces[p];
-    if (p == index) continue;
-    const bool away = numeric::BallApart(here.y, ball, other);
-    NoteAway(p, away ? here.y : contact.x_W, away ? ball : highest + site.step, kept);
-    if (away) continue;
-    double distance = -INFINITY;
-    if (other.kind == PieceKind::kConvex) {
-      const numeric::PointProjection there = at(other.convex);
-      distance = there.distance - there.distance_error;
-    } else if (other.kind == PieceKind::kHalfspace) {
-      distance = numeric::HalfspaceDistance(other, contact.x_W) -
-                 numeric::HalfspaceError(other, contact.x_W.lpNorm<1>());
-    }
-    if (!(distance - site.step * kUp > highest)) return false;
-    kept->friction = std::min(kept->friction, world_.model().objects[other.object].friction);
-  }
-  kept->n_W = here.n;
-  // |w/|w| - w'/|w'|| <= 2 |w - w'|/|w|, with |w| = distance + radius of the piece's ball or more;
-  // n itself is rounded within 32 u.
-  kept->normal_error = 2 * error / (here.distance - here.distance_error) * kUp + 64 * kUnit;
-  SetForcePoint(site, kept);
-  return true;
-}
-
-/** Corners of a core in W, in the order of certificates. */
-std::vector<Vector3d> CornersOf(const Convex& s) {
-  std::vector<Vector3d> corners;
-  if (s.kind == numeric::CoreKind::kPoints) {
-    for (int i = 0; i < s.num_points; ++i) corners.push_back(s.c + s.R * s.points[i]);
-  } else if (s.kind == numeric::CoreKind::kBox) {
-    const bool is_flat = s.half.head<2>().isZero(0);
-    const int count = !is_flat ? 8 : s.half[2] > 0 ? 2 : 1;
-    for (int i = 0; i < count; ++i) {
-      const int bits = count == 2 ? 4 * i : i;
-      corners.push_back(s.c + s.R * Vector3d(bits & 1 ? s.half[0] : -s.half[0],
-                                             bits & 2 ? s.half[1] : -s.half[1],
-                                             bits & 4 ? s.half[2] : -s.half[2]));
-    }
-  }
-  return corners;
-}
-
-/** The corners that touch the supporting plane of the core at its point y. */
-std::vector<int> RidgeAt(const std::vector<Vector3d>& corners, const Vector3d& y,
-                         const Vector3d& w) {
-  std::vector<int> ridge;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    constexpr double kNear = 1e-9;  // a guess; KeepOnRidge proves
-    if (w.dot(corners[i] - y) > -kNear * w.norm()) ridge.push_back(static_cast<int>(i));
-  }
-  return ridge;
-}
-
-// Real corners are within s.error of the stored ones, which turns an edge e by at most 2
-// s.error/|e| and moves a foot at |x - a| by as much of that; `slack` is eight times their sum and
-// covers rounding, at most 32 u of the coordinates.
-bool ContactKeeper::KeepOnRidge(const MovingSite& site, const numeric::Contact& contact, int index,
-                                KeptContact* kept) {
-  const Geometry& g = world_.geometry();
-  const ContactRules& rules = world_.model().contact;
-  const Convex& s = g.pieces[index].convex;
-  const numeric::PointProjection here = numeric::ProjectPoint(s, contact.x_W);
-  const std::vector<Vector3d> corners = CornersOf(s);
-  const Vector3d foot = here.y - s.radius * here.n;
-  const std::vector<int> ridge = RidgeAt(corners, foot, contact.x_W - foot);
-  if (ridge.empty() || ridge.size() > 2) return false;
-  const Vector3d a = corners[ridge[0]];
-  const double far = (site.upper - a).cwiseAbs().cwiseMax((site.lower - a).cwiseAbs()).norm();
-  double slack = 8 * (s.error + 32 * kUnit * (far + a.lpNorm<1>()));
-  Vector2 w = site.x - Constant<kDegree>(a);
-  if (ridge.size() == 2) {
-    const Vector3d e = corners[ridge[1]] - a;
-    slack *= 1 + 4 * far / e.norm();
-    const Model2 along = Dot<kDegree>(Vector3d(e / e.squaredNorm()), w);
-    const double margin = slack / e.norm();
-    if (!(LowerBound(along) > margin && UpperBound(along) < 1 - margin)) return false;
-    w = w - along * Constant<kDegree>(e);
-  }
-  for (std::size_t c = 0; c < corners.size(); ++c) {
-    if (std::find(ridge.begin(), ridge.end(), static_cast<int>(c)) != ridge.end()) continue;
-    const Vector3d p = corners[c] - a;
-    if (!(UpperBound(Dot<kDegree>(p, w)) < -slack * (p.norm() + far))) return false;
-  }
-  kept->n_W = w.c[0].head<3>().matrix().normalized();
-  const Model2 straight = Dot<kDegree>(kept->n_W, w);
-  const Vector2 across = w - straight * Constant<kDegree>(kept->n_W);
-  const Vector3d sides = UpperOf(across).cwiseMax(-LowerOf(across));
-  const double least = LowerBound(straight) - slack;
-  const double bend = sides.norm() * kUp + slack;
-  const double farthest = (UpperBound(straight) + bend + slack) * kUp - s.radius;
-  if (!(least > 0 && least - s.radius > site.radius)) return false;
-  if (!(farthest < site.radius + rules.epsilon)) return false;
-  kept->normal_error = bend / least * kUp + 64 * kUnit;
-  const Vector2 y = site.x - w;
-  const double seam = rules.seam + slack + s.radius * (1 + kept->normal_error) * kUp;
-  return FinishNear(site, index, {LowerOf(y), UpperOf(y), seam, farthest},
-                    {contact.site, index, {}, {}, check::RidgeEvidence{ridge}, {}}, kept);
-}
-
-// Every other piece keeps beyond the seam of the contact's point, or is never as near to the site.
-bool ContactKeeper::FinishNear(const MovingSite& site, int index, const Surroundings& around,
-                               const check::ContactEvidence& evidence, KeptContact* kept) {
-  const Geometry& g = world_.geometry();
-  kept->evidence = evidence;
-  kept->friction = world_.model().objects[g.pieces[index].object].friction;
-  const Vector3d y = 0.5 * (around.lower + around.upper), x = 0.5 * (site.lower + site.upper);
-  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
-    const ObstaclePiece& other = g.pieces[p];
-    if (p == index) continue;
-    const bool away = FartherThan(other, around.lower, around.upper, around.seam);
-    const double size = (site.upper - site.lower).norm() + (around.upper - around.lower).norm();
-    NoteAway(p, away ? y : x, size + (away ? around.seam : around.farthest), kept);
-    if (away) continue;
-    if (!FartherThan(other, site.lower, site.upper, around.farthest)) return false;
-    kept->friction = std::min(kept->friction, world_.model().objects[other.object].friction);
-  }
   SetForcePoint(site, kept);
   return true;
 }
@@ -394,7 +258,7 @@ bool ContactKeeper::Keep(const TaylorState<kDegree>& state, const numeric::Conta
   Flat flat;
   if (FindFlat(contact, &flat) && KeepOnFlat(site, contact, flat, kept)) return true;
   const int piece = FindConvex(contact);
-  if (piece < 0) return false;
+  if (piece < 0) return KeepOnTriangles(site, contact, kept);
   return KeepOnRidge(site, contact, piece, kept) || KeepOnConvex(site, contact, piece, kept);
 }
 

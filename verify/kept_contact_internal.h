@@ -12,13 +12,23 @@
 
 namespace cguide::verify {
 
-/** A flat side of an obstacle: the surface of a halfspace, or a face of a box. */
+/** A flat side of an obstacle: the surface of a halfspace, a face of a box, the plane of a
+ * triangle. */
 struct Flat {
   int piece = -1;
-  int face = -1;  ///< of a box: axis, plus 3 for its negative side; -1 for a halfspace
+  int face = -1;      ///< of a box: axis, plus 3 for its negative side; else -1
+  int triangle = -1;  ///< of a mesh, else -1
+  int side = 1;       ///< -1: against the triangle's normal
   bool operator<(const Flat& other) const {
-    return std::tie(piece, face) < std::tie(other.piece, other.face);
+    return std::tie(piece, face, triangle, side) <
+           std::tie(other.piece, other.face, other.triangle, other.side);
   }
+};
+
+/** Which triangles of a mesh share an edge: by its two corners, numbered by their coordinates. */
+struct MeshEdges {
+  std::vector<int> number;  ///< of each vertex
+  std::map<std::pair<int, int>, std::vector<int>> triangles;
 };
 
 /** A contact that stays active over a leaf (DESIGN part 6, cases F and L). */
@@ -29,6 +39,14 @@ struct KeptContact {
   Vector2 force_point;  ///< x - r n, in W
   check::ContactEvidence evidence;
 };
+
+/** Corners of the box of a moving point. */
+Eigen::Vector3d LowerOf(const Vector2& x);
+Eigen::Vector3d UpperOf(const Vector2& x);
+
+/** Whether the piece keeps farther from the box [lower, upper] than `distance`. */
+bool FartherThan(const numeric::ObstaclePiece& piece, const Eigen::Vector3d& lower,
+                 const Eigen::Vector3d& upper, double distance);
 
 /** Finds which contacts of one instant stay over a leaf. One per thread; it remembers which pieces
  lie behind which flats, a question over Q. */
@@ -73,6 +91,26 @@ class ContactKeeper {
   bool KeepOnRidge(const MovingSite& site, const numeric::Contact& contact, int piece,
                    KeptContact* kept);
 
+  /** F on a mesh: as on a flat, for the plane of a triangle and those next to it in the same plane;
+   the foot stays in their union, which is star-shaped about the first one's centroid. */
+  bool KeepOnTriangles(const MovingSite& site, const numeric::Contact& contact, KeptContact* kept);
+
+  /** The plane of triangles in doubles: d = n.x - h is within error + normal_error |x|_1 of the
+   real one. */
+  struct TrianglePlane {
+    Eigen::Vector3d n;
+    double h = 0;
+    double normal_error = 0;
+    double error = 0;
+  };
+  bool FindTriangle(const numeric::Contact& contact, Flat* flat, TrianglePlane* plane) const;
+  bool GrowTriangles(const Flat& flat, const TrianglePlane& plane, const Vector2& y,
+                     std::vector<int>* triangles);
+  bool TrianglesAllow(const Flat& flat, int piece, const Eigen::Vector3d& lower,
+                      const Eigen::Vector3d& upper);
+  const MeshEdges& EdgesOf(int piece);
+  bool LiesBehind(const Flat& flat, int piece, int triangle);
+
   /** Where other pieces must not be. */
   struct Surroundings {
     Eigen::Vector3d lower, upper;  ///< box of the contact's point
@@ -85,13 +123,13 @@ class ContactKeeper {
   bool FindFlat(const numeric::Contact& contact, Flat* flat) const;
   int FindConvex(const numeric::Contact& contact) const;
   bool InFace(const numeric::ObstaclePiece& piece, int face, const Vector2& x, double margin) const;
-  bool LiesBehind(const Flat& flat, int piece);
   void SetForcePoint(const MovingSite& site, KeptContact* kept) const;
   void NoteAway(int piece, const Eigen::Vector3d& y, double radius, KeptContact* kept) const;
 
   const numeric::World& world_;
   exact::PreparedModel exact_;
-  std::map<std::pair<Flat, int>, bool> behind_;
+  std::map<std::tuple<Flat, int, int>, bool> behind_;  ///< flat, piece, triangle or -1
+  std::map<int, MeshEdges> edges_;                     ///< by piece
 };
 
 }  // namespace cguide::verify

@@ -127,9 +127,12 @@ void BalanceProposer::Try(const std::vector<KeptContact>& contacts, const std::v
 
 const std::vector<ProposedForce>& BalanceProposer::Propose(const std::vector<KeptContact>& contacts,
                                                            const std::vector<Arm>& arms,
-                                                           const Vector3d& v_f, WeightKind kind) {
-  for (const Effort& effort : {Effort{4, true, 0x1p-4}, Effort{16, false, 0x1p-10}}) {
-    Try(contacts, arms, v_f, kind, effort);
+                                                           const Vector3d& v_f, WeightKind kind,
+                                                           Care care) {
+  const Effort efforts[] = {{4, true, 0x1p-4}, {16, false, 0x1p-10}, {16, false, 0x1p-25}};
+  const int count = care == Care::kQuick ? 2 : 3;
+  for (int i = 0; i < count; ++i) {
+    Try(contacts, arms, v_f, kind, efforts[i]);
     if (!forces_.empty()) break;
   }
   return forces_;

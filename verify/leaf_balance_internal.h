@@ -27,6 +27,9 @@ struct Arm {
  one end to the other. */
 enum class WeightKind { kConstant, kAffine };
 
+/** How near the limit of balance to look; the nearer, the longer numbers are. */
+enum class Care { kQuick, kThorough };
+
 /** Proposes forces that carry the weight -v_f at the centre of mass, with room on every side:
  floats, nothing is promised. One per thread. */
 class BalanceProposer {
@@ -36,7 +39,7 @@ class BalanceProposer {
    normal changes over the leaf. Empty where none was found. */
   const std::vector<ProposedForce>& Propose(const std::vector<KeptContact>& contacts,
                                             const std::vector<Arm>& arms,
-                                            const Eigen::Vector3d& v_f, WeightKind kind);
+                                            const Eigen::Vector3d& v_f, WeightKind kind, Care care);
 
  private:
   /** Pyramids of few sides and short directions do for most leaves. */
