@@ -30,7 +30,8 @@ struct Separation {
   std::vector<Plane> planes;
 };
 
-/** A direction in which a ray from the shape's centre leaves a solid's surroundings: the shape is
+/** A direction in which a ray from a point of the shape (the first corner of its core, the middle
+ of a cylinder) crosses the triangles of a solid in equal numbers from either side: the shape is
  outside the solid where the edge begins. */
 struct OutsideRay {
   int shape = -1;
@@ -114,8 +115,9 @@ struct Certificate {
 /** Edges of a path; one of a single waypoint has one edge, from it to itself. */
 std::vector<Edge> EdgesOf(const Path& path);
 
-/** Reads a certificate. Files beyond 1 GiB, nested deeper than 200 levels, with repeated or unknown
- keys, with numbers that are not finite or beyond 1e9, with indices out of range are refused.
+/** Reads a certificate. Files beyond 256 MiB or 30 million values, nested deeper than 200 levels,
+ with repeated or unknown keys, with numbers that are not finite or beyond 1e9, with indices out of
+ range are refused.
  @throws Error (kBadInput) that names the place. */
 Certificate ParseCertificate(const std::string& text);
 

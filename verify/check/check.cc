@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cguide/verify/check/check.h"
 
-#include <variant>
+#include <algorithm>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/verify/check/checkable.h"
 #include "cguide/verify/check/edge_checker_internal.h"
 #include "cguide/verify/check/interval_internal.h"
 #include "cguide/verify/check/precise_interval_internal.h"
@@ -11,37 +12,9 @@
 namespace cguide::check {
 namespace {
 
-/** Halving of smaller lengths would not be exact. */
-constexpr double kLeastLength = 1e-300;
-
-void RequireLength(double x) {
-  if (x >= kLeastLength) return;
-  throw Error(Error::Code::kBadInput,
-              "the model: a length below 1e-300 m; such shapes are refused");
-}
-
-void RequireLengths(const PieceShape& shape) {
-  if (const auto* box = std::get_if<Box>(&shape)) RequireLength(box->size.minCoeff());
-  if (const auto* capsule = std::get_if<Capsule>(&shape)) RequireLength(capsule->length);
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    RequireLength(std::min(cylinder->radius, cylinder->length));
-  }
-}
-
-void RequireCheckable(const Model& model) {
-  CheckModel(model);
-  if (model.contact.model == ContactModel::kNearest) {
-    throw Error(Error::Code::kBadInput,
-                "the model: contact model \"nearest\" has no continuous proofs; use \"sites\"");
-  }
-  for (const Link& link : model.robot.links) {
-    for (const LinkShape& shape : link.shapes) {
-      RequireLengths(std::visit([](const auto& g) { return PieceShape(g); }, shape.geometry));
-    }
-  }
-  for (const Object& object : model.objects) {
-    for (const Piece& piece : object.pieces) RequireLengths(piece.geometry);
-  }
+/** Numbers of joint values that are not the robot's would be read out of bounds. */
+void RequireFits(const Configuration& q, const Robot& robot) {
+  Require(q.joints.size() == robot.num_columns, "the edge has not as many joints as the robot");
 }
 
 }  // namespace
@@ -66,6 +39,7 @@ struct Checker::State {
 Checker::Checker(const Model& model, const CheckOptions& options) {
   const int bits = options.precise_bits;
   Require(bits == 0 || (bits >= 53 && bits <= 4096), "the precision must lie in 53..4096 bits");
+  RequireIeeeArithmetic();
   RequireCheckable(model);
   state_ = std::make_unique<State>(model, options);
 }
@@ -75,6 +49,9 @@ Checker::Checker(Checker&&) noexcept = default;
 Checker& Checker::operator=(Checker&&) noexcept = default;
 
 std::string Checker::CheckEdge(const Edge& edge, const EdgeProof& proof) {
+  RequireIeeeArithmetic();
+  RequireFits(edge.from, state_->model.robot);
+  RequireFits(edge.to, state_->model.robot);
   if (state_->fast) return state_->fast->Check(edge, proof);
   const PrecisionScope scope(state_->bits);
   return state_->precise->Check(edge, proof);
@@ -113,13 +90,14 @@ CheckReport CheckCertificate(const Certificate& certificate, const CheckOptions&
     report.refused.push_back("waypoint " + std::to_string(i) + ": joint \"" + joint +
                              "\" is beyond its limits");
   }
-  std::vector<char> proved(edges.size(), 0);
+  std::vector<char> proved(edges.size(), 0), claimed(edges.size(), 0);
   for (const EdgeProof& proof : certificate.proofs) {
     const std::string place = "edge " + std::to_string(proof.edge);
     if (proof.edge < 0 || proof.edge >= report.edges) {
       report.refused.push_back(place + ": the path has no such edge");
       continue;
     }
+    claimed[proof.edge] = 1;
     const std::string refusal = checker.CheckEdge(edges[proof.edge], proof);
     if (refusal.empty()) {
       proved[proof.edge] = 1;
@@ -129,9 +107,7 @@ CheckReport CheckCertificate(const Certificate& certificate, const CheckOptions&
   }
   for (int i = 0; i < report.edges; ++i) {
     report.proved += proved[i];
-    const bool claimed = std::any_of(certificate.proofs.begin(), certificate.proofs.end(),
-                                     [i](const EdgeProof& proof) { return proof.edge == i; });
-    if (!claimed) report.missing.push_back(i);
+    if (!claimed[i]) report.missing.push_back(i);
   }
   return report;
 }

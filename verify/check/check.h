@@ -23,15 +23,16 @@ struct CheckOptions {
  may depend on the precision, never whether they are true. */
 class Checker {
  public:
-  /** @throws Error where the model is not one (CheckModel), has lengths below 1e-300 m, or asks for
-   ContactModel::kNearest, under which nothing continuous can be shown. */
+  /** @throws Error where RequireCheckable refuses the model, or this thread's doubles are not
+   rounded to nearest with gradual underflow. */
   explicit Checker(const Model& model, const CheckOptions& options = {});
   ~Checker();
   Checker(Checker&&) noexcept;
   Checker& operator=(Checker&&) noexcept;
 
   /** Empty where the proof shows that every real configuration of the edge is in C_guide but for
-   joint limits; else what is not shown, and where. */
+   joint limits; else what is not shown, and where. @throws Error where the edge does not fit the
+   robot, or as the constructor does. */
   std::string CheckEdge(const Edge& edge, const EdgeProof& proof);
 
   struct State;

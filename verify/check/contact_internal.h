@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <tuple>
 
 #include "cguide/verify/check/exact_plane.h"
@@ -77,7 +78,7 @@ class ContactChecker {
   bool IsRidge(const PlacedSet<I>& placed, const std::vector<int>& corners,
                const PolynomialVector<I>& x, PolynomialVector<I>* w) const;
   bool OthersStayAway(const ContactEvidence& evidence, const Guard& seam, const Guard& nearer,
-                      double* friction);
+                      KeptContact<I>* kept);
   std::optional<Flat> FlatOf(const ContactEvidence& evidence) const;
   bool IsOverFace(const ContactEvidence& evidence, const Flat& flat, const MovingSite<I>& site,
                   const PolynomialVector<I>& y) const;
@@ -89,6 +90,7 @@ class ContactChecker {
   bool IsAway(const Guard& guard, const PlacedMesh<I>& mesh, const PlacedTriangle<I>& triangle,
               const std::vector<Plane>& planes) const;
   bool LiesBehind(const Flat& flat, int piece, int triangle) const;
+  IntervalVector<I> AboveFoot(const Flat& flat, const Guard& guard) const;
   std::optional<IntervalVector<I>> PointOf(const NearEvidence& near, const Piece& piece) const;
   I Excess(const PlacedSet<I>& placed, const IntervalVector<I>& y_P,
            const IntervalVector<I>& w_W) const;
@@ -178,6 +180,7 @@ std::array<Eigen::Vector3d, 3> ContactChecker<I>::CornersOf(int piece, int trian
 template <typename I>
 bool ContactChecker<I>::LiesBehind(const Flat& flat, int piece, int triangle) const {
   const auto key = std::tuple_cat(flat.key, std::tuple(piece, triangle));
+  if (cache_.size() > 1'000'000) cache_.clear();
   const auto [entry, is_new] = cache_.try_emplace(key, false);
   if (!is_new) return entry->second;
   const Piece& asked = *prepared_.obstacles[piece].piece;
@@ -238,6 +241,7 @@ bool ContactChecker<I>::IsOverTriangles(const ContactEvidence& evidence, const F
                                         const PolynomialVector<I>& y) const {
   const Pose& X = prepared_.obstacles[evidence.piece].piece->X_WP;
   std::vector<std::array<Eigen::Vector3d, 2>> edges;
+  std::set<std::array<double, 6>> directed;
   IntervalVector<I> centroid;
   for (const int index : evidence.flat->triangles) {
     std::array<Eigen::Vector3d, 3> v = CornersOf(evidence.piece, index);
@@ -251,7 +255,10 @@ bool ContactChecker<I>::IsOverTriangles(const ContactEvidence& evidence, const F
         plane.n[0] * flat.exact.n[0] + plane.n[1] * flat.exact.n[1] + plane.n[2] * flat.exact.n[2];
     if (sense == 0) return false;  // a degenerate triangle
     if (sense < 0) std::swap(v[1], v[2]);
-    for (int k = 0; k < 3; ++k) edges.push_back({v[k], v[(k + 1) % 3]});
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d &a = v[k], &b = v[(k + 1) % 3];
+      if (directed.insert({a[0], a[1], a[2], b[0], b[1], b[2]}).second) edges.push_back({a, b});
+    }
     if (index != evidence.flat->triangles[0]) continue;
     for (int i = 0; i < 3; ++i) centroid[i] = I(0.0);
     for (int k = 0; k < 3; ++k) {
@@ -260,8 +267,8 @@ bool ContactChecker<I>::IsOverTriangles(const ContactEvidence& evidence, const F
     }
   }
   for (const auto& edge : edges) {
-    const std::array<Eigen::Vector3d, 2> reverse{edge[1], edge[0]};
-    if (std::find(edges.begin(), edges.end(), reverse) != edges.end()) continue;
+    const Eigen::Vector3d &a = edge[0], &b = edge[1];
+    if (directed.count({b[0], b[1], b[2], a[0], a[1], a[2]}) != 0) continue;
     const IntervalVector<I> from = Placed(evidence.piece, edge[0]);
     const IntervalVector<I> way = Minus(Placed(evidence.piece, edge[1]), from);
     const IntervalVector<I> inward = Cross(flat.n, way);
@@ -290,6 +297,17 @@ bool ContactChecker<I>::IsOverFace(const ContactEvidence& evidence, const Flat& 
   return true;
 }
 
+/** A point half a seam above the foot at t = 0. Where every triangle of a solid is behind the plane
+ or away from the foot, the points within the seam above the plane, for all t, are a connected set
+ that meets none: all are outside if one is (FORMAT.md, lemma 5). */
+template <typename I>
+IntervalVector<I> ContactChecker<I>::AboveFoot(const Flat& flat, const Guard& guard) const {
+  const I step = I(0.5) * I(model_.contact.seam);
+  IntervalVector<I> above;
+  for (int i = 0; i < 3; ++i) above[i] = guard.center[i].c[0] + step * flat.n[i];
+  return above;
+}
+
 template <typename I>
 bool ContactChecker<I>::OthersAllow(const ContactEvidence& evidence, const Flat& flat,
                                     const Guard& guard, double* friction) {
@@ -299,6 +317,9 @@ bool ContactChecker<I>::OthersAllow(const ContactEvidence& evidence, const Flat&
     const std::vector<Plane>& planes = PlanesFor(evidence, p);
     if (own_primitive || IsAway(guard, p, planes)) continue;
     if (obstacle.mesh) {
+      if (obstacle.mesh->solid && !IsSeenOutside(AboveFoot(flat, guard), *obstacle.mesh, flat.n)) {
+        return false;
+      }
       for (int t = 0; t < static_cast<int>(obstacle.mesh->triangles.size()); ++t) {
         if (IsAway(guard, *obstacle.mesh, obstacle.mesh->triangles[t], planes)) continue;
         if (!LiesBehind(flat, p, t)) return DeclinePiece(p);
@@ -345,7 +366,8 @@ std::optional<IntervalVector<I>> ContactChecker<I>::PointOf(const NearEvidence& 
     IntervalVector<I> sum{I(0.0), I(0.0), I(0.0)};
     I total(0.0);
     for (const auto& [index, weight] : near.corners) {
-      if (index >= static_cast<int>(hull->vertices.size()) || !(weight >= 0)) return std::nullopt;
+      if (index < 0 || index >= static_cast<int>(hull->vertices.size()) || !(weight >= 0))
+        return std::nullopt;
       total = total + I(weight);
       for (int i = 0; i < 3; ++i) sum[i] = sum[i] + I(weight) * I(hull->vertices[index][i]);
     }
@@ -385,12 +407,15 @@ I ContactChecker<I>::Excess(const PlacedSet<I>& placed, const IntervalVector<I>&
 // site as it cannot own it.
 template <typename I>
 bool ContactChecker<I>::OthersStayAway(const ContactEvidence& evidence, const Guard& seam,
-                                       const Guard& nearer, double* friction) {
+                                       const Guard& nearer, KeptContact<I>* kept) {
   for (int p = 0; p < static_cast<int>(prepared_.obstacles.size()); ++p) {
     const Obstacle<I>& other = prepared_.obstacles[p];
     const std::vector<Plane>& planes = PlanesFor(evidence, p);
     if (p == evidence.piece || IsAway(seam, p, planes)) continue;
     if (other.mesh) {
+      // No triangle enters both guards, so what they share is outside where the surface's point is.
+      const IntervalVector<I> foot{seam.center[0].c[0], seam.center[1].c[0], seam.center[2].c[0]};
+      if (other.mesh->solid && !IsSeenOutside(foot, *other.mesh, kept->n)) return DeclinePiece(p);
       for (const PlacedTriangle<I>& t : other.mesh->triangles) {
         if (!IsAway(seam, *other.mesh, t, planes) && !IsAway(nearer, *other.mesh, t, planes)) {
           return DeclinePiece(p);
@@ -399,7 +424,7 @@ bool ContactChecker<I>::OthersStayAway(const ContactEvidence& evidence, const Gu
     } else if (!IsAway(nearer, p, planes)) {
       return DeclinePiece(p);
     }
-    *friction = std::min(*friction, model_.objects[other.object].friction);
+    kept->friction = std::min(kept->friction, model_.objects[other.object].friction);
   }
   return true;
 }
@@ -436,7 +461,7 @@ std::optional<KeptContact<I>> ContactChecker<I>::KeepNear(const ContactEvidence&
   }
   const Guard seam = MakeGuard(surface, Upper(I(model_.contact.seam) + spread + ball * kept.error));
   const Guard nearer = MakeGuard(center, Upper(step + farthest));
-  if (!OthersStayAway(evidence, seam, nearer, &kept.friction)) return std::nullopt;
+  if (!OthersStayAway(evidence, seam, nearer, &kept)) return std::nullopt;
   return kept;
 }
 
@@ -497,12 +522,18 @@ std::optional<KeptContact<I>> ContactChecker<I>::KeepOnRidge(const ContactEviden
   }
   const Guard seam = MakeGuard(surface, Upper(I(model_.contact.seam) + ball * kept.error));
   const Guard nearer = MakeGuard(site.x, Upper(farthest));
-  if (!OthersStayAway(evidence, seam, nearer, &kept.friction)) return std::nullopt;
+  if (!OthersStayAway(evidence, seam, nearer, &kept)) return std::nullopt;
   return kept;
 }
 
 template <typename I>
 std::optional<KeptContact<I>> ContactChecker<I>::Keep(const ContactEvidence& evidence) {
+  const auto within = [](int i, std::size_t end) {
+    return i >= 0 && static_cast<std::size_t>(i) < end;
+  };
+  if (!within(evidence.site, model_.sites.size())) return Decline("there is no such site or piece");
+  if (!within(evidence.piece, prepared_.obstacles.size()))
+    return Decline("there is no such site or piece");
   const Site& site = model_.sites[evidence.site];
   const int body = model_.robot.links[site.link].body;
   const auto& allowed = model_.contact.bodies;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <map>
+#include <span>
 #include <string>
 
 #include "cguide/exact/core/error.h"
@@ -22,7 +25,7 @@ class EdgeChecker {
     refusal_.clear();
     std::vector<Obligation> all = AllObligations();
     if (!CheckOutside(proof, all)) return refusal_;
-    CheckNode(proof.root, {0.5, 0.5}, std::move(all), true);
+    CheckNode(proof.root, {0.5, 0.5}, all, true);
     return refusal_;
   }
 
@@ -38,16 +41,14 @@ class EdgeChecker {
     std::vector<Obligation> all;
     const int shapes = static_cast<int>(prepared_.shapes.size());
     const int pieces = static_cast<int>(prepared_.obstacles.size());
+    std::vector<std::vector<int>> of_body(prepared_.model->robot.bodies.size());
+    for (int s = 0; s < shapes; ++s) of_body[prepared_.shapes[s].body].push_back(s);
     for (int s = 0; s < shapes; ++s) {
       for (int p = 0; p < pieces; ++p) all.push_back({s, p, false});
     }
     for (const auto& [i, j] : prepared_.model->self_pairs) {
-      for (int s = 0; s < shapes; ++s) {
-        for (int t = 0; t < shapes; ++t) {
-          if (prepared_.shapes[s].body == i && prepared_.shapes[t].body == j) {
-            all.push_back({s, t, true});
-          }
-        }
+      for (const int s : of_body[i]) {
+        for (const int t : of_body[j]) all.push_back({s, t, true});
       }
     }
     return all;
@@ -59,12 +60,17 @@ class EdgeChecker {
     return false;
   }
 
+  /** Names may be of any length, and there may be a refusal for each edge. */
+  static std::string Shortened(const std::string& name) {
+    return name.size() <= 80 ? name : name.substr(0, 80) + " ...";
+  }
+
   std::string Describe(const Obligation& o) const {
     const Robot& robot = prepared_.model->robot;
-    const std::string first = robot.links[prepared_.shapes[o.shape].link].name;
+    const std::string first = Shortened(robot.links[prepared_.shapes[o.shape].link].name);
     const std::string second =
-        o.self ? robot.links[prepared_.shapes[o.other].link].name
-               : prepared_.model->objects[prepared_.obstacles[o.other].object].name;
+        Shortened(o.self ? robot.links[prepared_.shapes[o.other].link].name
+                         : prepared_.model->objects[prepared_.obstacles[o.other].object].name);
     return "that \"" + first + "\" (shape " + std::to_string(o.shape) + ") and \"" + second +
            "\" (" + (o.self ? "shape " : "piece ") + std::to_string(o.other) + ") keep apart";
   }
@@ -83,10 +89,18 @@ class EdgeChecker {
     return *moved;
   }
 
+  /** The planes that a node gives, by shape and other. */
+  using PlanesOf = std::map<std::pair<int, int>, const std::vector<Plane>*>;
+  static PlanesOf Index(const std::vector<Separation>& separations) {
+    PlanesOf planes;
+    for (const Separation& s : separations) planes[{s.shape, s.other}] = &s.planes;
+    return planes;
+  }
+
   bool CheckOutside(const EdgeProof& proof, const std::vector<Obligation>& all);
-  bool CheckNode(const Node& node, const Span& span, std::vector<Obligation> open,
-                 bool balance_open);
-  bool Holds(const Obligation& o, const Node& node);
+  /** `open`: what has to be shown over the span; its order is changed. */
+  bool CheckNode(const Node& node, const Span& span, std::span<Obligation> open, bool balance_open);
+  bool Holds(const Obligation& o, const PlanesOf& apart, const PlanesOf& self_apart);
   bool CheckBalance(const Balance& balance, const Span& span);
 
   Prepared<I> prepared_;
@@ -96,6 +110,12 @@ class EdgeChecker {
   std::vector<std::optional<MovingSet<I>>> moved_;
   BehindCache behind_;
 };
+
+/** A point of the shape's core, in its frame; the middle of a hull's box may not be one. */
+template <typename I>
+IntervalVector<I> PointOfCore(const ConvexSet<I>& set) {
+  return set.corners.empty() ? IntervalVector<I>{I(0.0), I(0.0), I(0.0)} : set.corners.front();
+}
 
 // A solid's surface is kept apart from the shape for all s, so that its side is the one at s = 0.
 template <typename I>
@@ -110,13 +130,12 @@ bool EdgeChecker<I>::CheckOutside(const EdgeProof& proof, const std::vector<Obli
     placed = true;
     const MovingSet<I>& shape = Shape(o.shape);
     if (Apart(shape.box, obstacle.mesh->box)) continue;
-    const Eigen::Vector3d center = 0.5 * shape.set->lower + 0.5 * shape.set->upper;
-    const PolynomialVector<I> c = Apply(shape.X, Lifted<I>(center));
+    const PolynomialVector<I> c = Apply(shape.X, PointOfCore(*shape.set));
     const IntervalVector<I> p{c[0].c[0], c[1].c[0], c[2].c[0]};
     const bool outside =
         std::any_of(proof.outside.begin(), proof.outside.end(), [&](const OutsideRay& ray) {
           return ray.shape == o.shape && ray.piece == o.other &&
-                 IsOutside(p, *obstacle.mesh, ray.direction);
+                 IsOutside(p, *obstacle.mesh, Lifted<I>(ray.direction));
         });
     if (!outside) return Refuse(start, Describe(o) + " (outside the solid)");
   }
@@ -124,15 +143,14 @@ bool EdgeChecker<I>::CheckOutside(const EdgeProof& proof, const std::vector<Obli
 }
 
 template <typename I>
-bool EdgeChecker<I>::Holds(const Obligation& o, const Node& node) {
+bool EdgeChecker<I>::Holds(const Obligation& o, const PlanesOf& apart, const PlanesOf& self_apart) {
   static const std::vector<Plane> kNone;
-  const std::vector<Plane>* planes = &kNone;
-  for (const Separation& s : o.self ? node.self_apart : node.apart) {
-    if (s.shape == o.shape && s.other == o.other) planes = &s.planes;
-  }
-  if (o.self) return AreApart(Shape(o.shape), Shape(o.other), *planes);
+  const PlanesOf& given = o.self ? self_apart : apart;
+  const auto found = given.find({o.shape, o.other});
+  const std::vector<Plane>& planes = found == given.end() ? kNone : *found->second;
+  if (o.self) return AreApart(Shape(o.shape), Shape(o.other), planes);
   const Obstacle<I>& obstacle = prepared_.obstacles[o.other];
-  return IsFree(Shape(o.shape), obstacle, *planes,
+  return IsFree(Shape(o.shape), obstacle, planes,
                 prepared_.Skin(prepared_.shapes[o.shape].body, obstacle.object));
 }
 
@@ -158,6 +176,9 @@ bool EdgeChecker<I>::CheckBalance(const Balance& balance, const Span& span) {
   std::vector<MovingWrench<I>> wrenches;
   std::vector<Polynomial<I>> weights;
   for (const ForceEvidence& force : balance.forces) {
+    if (force.contact < 0 || force.contact >= static_cast<int>(kept.size())) {
+      return Refuse(span, "the contact of a force");
+    }
     const KeptContact<I>& contact = kept[force.contact];
     if (!IsAdmissible(contact, force.u_W)) {
       return Refuse(span, "that a force stays in the friction cone of contact " +
@@ -172,10 +193,13 @@ bool EdgeChecker<I>::CheckBalance(const Balance& balance, const Span& span) {
 }
 
 template <typename I>
-bool EdgeChecker<I>::CheckNode(const Node& node, const Span& span, std::vector<Obligation> open,
+bool EdgeChecker<I>::CheckNode(const Node& node, const Span& span, std::span<Obligation> open,
                                bool balance_open) {
   if (!open.empty() || (balance_open && node.balance)) PlaceAt(span);
-  std::erase_if(open, [&](const Obligation& o) { return Holds(o, node); });
+  const PlanesOf apart = Index(node.apart), self_apart = Index(node.self_apart);
+  const auto rest = std::partition(
+      open.begin(), open.end(), [&](const Obligation& o) { return !Holds(o, apart, self_apart); });
+  open = open.first(static_cast<std::size_t>(rest - open.begin()));
   if (balance_open && node.balance) {
     if (!CheckBalance(*node.balance, span)) return false;
     balance_open = false;
@@ -187,7 +211,7 @@ bool EdgeChecker<I>::CheckNode(const Node& node, const Span& span, std::vector<O
   }
   const double half = 0.5 * span.half;
   return CheckNode(node.halves[0], {span.middle - half, half}, open, balance_open) &&
-         CheckNode(node.halves[1], {span.middle + half, half}, std::move(open), balance_open);
+         CheckNode(node.halves[1], {span.middle + half, half}, open, balance_open);
 }
 
 }  // namespace cguide::check

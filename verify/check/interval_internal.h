@@ -3,7 +3,15 @@
 
 #include <mpfr.h>
 
+#include <cfenv>
+#include <cfloat>
 #include <cmath>
+
+#include "cguide/exact/core/error.h"
+
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "intervals do not hold under -ffast-math or -ffinite-math-only; remove the option"
+#endif
 
 // Intervals of reals with ends in doubles. Every operation returns a set that holds the result for
 // all members of its operands.
@@ -14,6 +22,17 @@
 // "Computing predecessor and successor in rounding to nearest"]. Overflow and NaN end in intervals
 // of which no comparison is true.
 namespace cguide::check {
+
+static_assert(FLT_EVAL_METHOD == 0, "the bounds need doubles that are evaluated as doubles");
+
+/** Refuses threads in which a library has changed the rounding mode (PPL does) or had denormal
+ numbers flushed to zero: the ends of intervals would lie inside. @throws Error. */
+inline void RequireIeeeArithmetic() {
+  volatile double least = 0x1p-1074, normal = 0x1p-1022;
+  Require(std::fegetround() == FE_TONEAREST && least > 0 && 0.5 * normal > 0,
+          "double arithmetic of this thread does not round to nearest with gradual underflow; a "
+          "library has changed the mode");
+}
 
 class Interval {
  public:

@@ -14,6 +14,9 @@ using nlohmann::json;
 
 constexpr std::size_t kMaxBytes = 256u << 20;
 constexpr int kMaxDepth = 200;
+/** A value takes at most about 100 bytes once read, so this is 3 GB; 256 MiB of plain doubles are
+ some 15 million. */
+constexpr long kMaxValues = 30'000'000;
 
 [[noreturn]] void Refuse(const std::string& why) { throw Error(Error::Code::kBadInput, why); }
 
@@ -22,6 +25,7 @@ class KeyGuard {
  public:
   bool operator()(int depth, json::parse_event_t event, json& value) {
     if (depth > kMaxDepth) Refuse("nested deeper than 200 levels; no certificate is");
+    if (++events_ > kMaxValues) Refuse("more than 30 million values; split the certificate");
     if (event == json::parse_event_t::object_start) open_.emplace_back();
     if (event == json::parse_event_t::object_end) open_.pop_back();
     if (event == json::parse_event_t::key &&
@@ -34,6 +38,7 @@ class KeyGuard {
 
  private:
   std::vector<std::set<std::string>> open_;
+  long events_ = 0;
 };
 
 }  // namespace

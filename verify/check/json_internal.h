@@ -11,8 +11,8 @@
 
 namespace cguide::check {
 
-/** Parses a text. Repeated keys, nesting beyond 200 levels and texts beyond 256 MiB are refused.
- @throws Error (kBadInput) with the byte. */
+/** Parses a text. Repeated keys, nesting beyond 200 levels, texts beyond 256 MiB and more than 30
+ million values are refused. @throws Error (kBadInput) with the byte. */
 nlohmann::json ParseJson(const std::string& text);
 
 /** A value and the way to it, which a refusal names. Borrows the value and the view it came from.

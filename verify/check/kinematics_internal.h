@@ -161,7 +161,7 @@ void TurnJoint(const ConstantJoint<I>& joint, const Polynomial<I>& value, Moving
 }
 
 /** f = sin(s phi)/sin(phi) with s = middle + half t, for 0 <= phi <= pi/2, 0 <= s <= 1. It grows
- with phi at a rate of at most 1/2, and s <= f <= s + phi^2/5 for phi <= 1 (FORMAT.md, lemma 2). So
+ with phi at a rate below 1, and s <= f <= s + phi^2/5 for phi <= 1 (FORMAT.md, lemma 2). So
  it is expanded at the lower end of phi, and its growth up to the upper end is added. */
 template <typename I>
 Polynomial<I> SlerpWeight(const I& phi, double middle, double half) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "cguide/verify/check/solids_internal.h"
 
@@ -115,20 +117,22 @@ struct Prepared {
         obstacles.push_back(MakeObstacle<I>(static_cast<int>(o), piece));
       }
     }
+    may_touch = given.contact.may_touch;
+    std::sort(may_touch.begin(), may_touch.end());
   }
 
   /** The skin of DESIGN part 2: where the pair is listed in contact.may_touch. */
   double Skin(int body, int object) const {
-    const auto& pairs = model->contact.may_touch;
-    return std::find(pairs.begin(), pairs.end(), std::pair(body, object)) != pairs.end()
-               ? model->contact.skin
-               : 0;
+    const bool listed =
+        std::binary_search(may_touch.begin(), may_touch.end(), std::pair(body, object));
+    return listed ? model->contact.skin : 0;
   }
 
   const Model* model;
   std::vector<ConstantJoint<I>> joints;
   std::vector<RobotShape<I>> shapes;
   std::vector<Obstacle<I>> obstacles;
+  std::vector<std::pair<int, int>> may_touch;  ///< sorted
 };
 
 }  // namespace cguide::check

@@ -78,20 +78,20 @@ I Determinant(const IntervalVector<I>& a, const IntervalVector<I>& b, const Inte
 /** Whether a point is outside a solid: its winding number, the signed number of triangles that a
  ray from it crosses, is zero (FORMAT.md, lemma 4). False where a crossing is not certain. */
 template <typename I>
-bool IsOutside(const IntervalVector<I>& p, const PlacedMesh<I>& mesh,
-               const Eigen::Vector3d& direction) {
-  const IntervalVector<I> u = Lifted<I>(direction);
+bool IsOutside(const IntervalVector<I>& p, const PlacedMesh<I>& mesh, const IntervalVector<I>& u) {
   int winding = 0;
   for (const PlacedTriangle<I>& t : mesh.triangles) {
     IntervalVector<I> v[3];
-    for (int k = 0; k < 3; ++k) v[k] = Minus(mesh.vertices_W[t.vertex[k]], p);
-    int positive = 0, negative = 0;
-    I sum(0.0);
+    int positive = 0, negative = 0, behind = 0;
+    for (int k = 0; k < 3; ++k) {
+      v[k] = Minus(mesh.vertices_W[t.vertex[k]], p);
+      behind += IsNegative(Dot(u, v[k]));
+    }
+    if (behind == 3) continue;
     for (int k = 0; k < 3; ++k) {
       const I side = Determinant(u, v[k], v[(k + 1) % 3]);
       positive += IsPositive(side);
       negative += IsNegative(side);
-      sum = sum + side;
     }
     if (positive > 0 && negative > 0) continue;  // the line passes by
     if (positive < 3 && negative < 3) return false;
@@ -101,6 +101,19 @@ bool IsOutside(const IntervalVector<I>& p, const PlacedMesh<I>& mesh,
     if (IsPositive(depth) == (sense > 0)) winding += sense;
   }
   return winding == 0;
+}
+
+/** The same, told by the box, the ray along n, or else by the first of a few rays beside it that
+ meets no edge. */
+template <typename I>
+bool IsSeenOutside(const IntervalVector<I>& p, const PlacedMesh<I>& mesh,
+                   const IntervalVector<I>& n) {
+  static constexpr double kAside[5][3] = {
+      {0, 0, 0}, {0.31, 0.17, -0.23}, {-0.29, 0.37, 0.19}, {0.11, -0.41, 0.27}, {-1.3, -0.7, 0.9}};
+  if (Apart(p, mesh.box)) return true;
+  return std::any_of(std::begin(kAside), std::end(kAside), [&](const double(&aside)[3]) {
+    return IsOutside(p, mesh, {n[0] + I(aside[0]), n[1] + I(aside[1]), n[2] + I(aside[2])});
+  });
 }
 
 }  // namespace cguide::check

@@ -108,7 +108,8 @@ MovingSet<I> Move(const ConvexSet<I>& set, const ConstantPose<I>& X_LS, const Mo
   for (int i = 0; i < 3; ++i) {
     I reach(set.radius);
     for (int j = 0; j < 3; ++j) {
-      if (set.upper[j] == set.lower[j]) continue;
+      // Of denormal coordinates the middle may be neither.
+      if (set.upper[j] == center[j] && set.lower[j] == center[j]) continue;
       const I half = Join(I(set.upper[j]) - I(center[j]), I(center[j]) - I(set.lower[j]));
       reach = reach + Magnitude(half) * Magnitude(RangeOf(moving.X.R[j][i]));
     }
