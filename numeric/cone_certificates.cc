@@ -238,7 +238,7 @@ CGUIDE_INLINE double HighestKernel(const double* rows, std::size_t stride, std::
     const V mark = Load<V>(rows + 7 * stride + j);
     highest = Larger(ColumnProducts<V>(rows, stride, j, y) - 0x1p900 * mark, highest);
   }
-  return Largest(highest).value;
+  return Largest(highest);
 }
 
 template <typename V>

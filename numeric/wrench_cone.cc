@@ -85,8 +85,7 @@ CGUIDE_INLINE void ScaleBlock(const Block<V>& block, double* e, std::size_t stri
 template <typename V>
 CGUIDE_INLINE bool AllOrdinary(const Pass<V>& pass) {
   const double sum = Sum(pass.sum);
-  return sum == sum && Largest(pass.largest).value <= 0x1p900 &&
-         -Largest(-pass.smallest).value >= 0x1p-900;
+  return sum == sum && Largest(pass.largest) <= 0x1p900 && -Largest(-pass.smallest) >= 0x1p-900;
 }
 
 /** Numbers first[0], first[step], ... first[7 step] as lanes. */
@@ -152,7 +151,7 @@ CGUIDE_INLINE bool ForcesKernel(const double* __restrict forces, std::size_t siz
     const Tail tail(forces + 6 * whole, size - whole);
     FillBlockFromForces(tail.data, e + whole, stride, &pass);
   }
-  *reach = Largest(pass.far).value;
+  *reach = Largest(pass.far);
   return AllOrdinary(pass);
 }
 
