@@ -47,17 +47,11 @@ std::optional<ConeAnswer> TryConeMembership(const WrenchCone& cone, const Wrench
   ConeAnswer answer;
   answer.pivots = p.pivots;
   if (p.feasible) {
-    if (!p.full_rank) return std::nullopt;
-    const double kappa = BoundKappa(cone, p.basis, p.inverse);
-    if (!ProvePositive(cone, p.basis, p.inverse, kappa, v, p.x)) return std::nullopt;
+    if (!p.full_rank || !ProveInterior(cone, v, &p)) return std::nullopt;
     ReportBasis(cone, v, p.basis, p.x, &answer);
     return answer;
   }
-  answer.y = p.y;
-  if (!ProvePositiveProduct(answer.y, v) || !LeanAway(cone, scratch, &answer.y) ||
-      !ProvePositiveProduct(answer.y, v)) {
-    return std::nullopt;
-  }
+  if (!ProveOutside(cone, v, scratch, &answer.y)) return std::nullopt;
   answer.where = Membership::kOutside;
   return answer;
 }

@@ -23,9 +23,6 @@ constexpr int kMaxPivots = 100;
 
 constexpr double kLowest = -0x1p1000;  // below every ratio
 
-constexpr double kUnitLane[6][8] = {{1},          {0, 1},          {0, 0, 1},
-                                    {0, 0, 0, 1}, {0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 1}};
-
 /** The scaled columns by rows. */
 struct Columns {
   const double* row[6];
@@ -139,6 +136,7 @@ CGUIDE_INLINE void PhaseOneKernel(const double* __restrict rows, std::size_t str
   p.feasible = feasible;
   p.pivots = pivots;
   Store(x, p.x);
+  Store(artificial, p.artificial);
   if (feasible) return;
   // The multipliers anew: the sum of the artificial rows.
   for (int k = 0; k < 6; ++k) p.y[k] = Sum(artificial * Load<V>(p.inverse.c[k]));

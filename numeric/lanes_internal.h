@@ -233,11 +233,18 @@ CGUIDE_INLINE double Sum(const V& v) {
   return two[0] + two[1];
 }
 
-/** Six numbers and two zeros. */
+/** p[0], p[step], ... p[5 step] and two zeros. */
 template <Lanes8 V>
-CGUIDE_INLINE V LoadSix(const double* p) {
-  double lanes[8] = {p[0], p[1], p[2], p[3], p[4], p[5]};
-  return Load<V>(lanes);
+CGUIDE_INLINE V LoadSix(const double* p, std::size_t step = 1) {
+  const double *q = p + 2 * step, *r = q + 2 * step;
+  V v;
+  if constexpr (kParts<V> == 1) {
+    v.part[0] = typename V::Part{p[0], p[step], q[0], q[step], r[0], r[step], 0, 0};
+  } else {
+    v.part[0] = typename V::Part{p[0], p[step], q[0], q[step]};
+    v.part[1] = typename V::Part{r[0], r[step], 0, 0};
+  }
+  return v;
 }
 
 /** y . (columns j .. j + 7) of six rows: ((y0 a0 + y1 a1) + (y2 a2 + y3 a3)) + (y4 a4 + y5 a5). */
