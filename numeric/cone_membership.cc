@@ -62,7 +62,7 @@ ConeAnswer ConeMembership(const WrenchCone& cone, const WrenchDemand& v, ConeWor
   ConeAnswer answer;
   answer.stage = ConeStage::kExact;
   answer.pivots = workspace->scratch->proposal.pivots;
-  answer.proof = DecideExactly(cone, v, workspace->scratch->proposal);
+  answer.proof = DecideExactly(cone, v, workspace->scratch.get());
   answer.where = answer.proof->where;
   return answer;
 }

@@ -38,6 +38,7 @@ class ConeWorkspace {
   ConeWorkspace& operator=(ConeWorkspace&&) noexcept;
 
   struct Scratch;  // numeric/cone_simplex_internal.h
+  struct Integers;
   std::unique_ptr<Scratch> scratch;
 };
 

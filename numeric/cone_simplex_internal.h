@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "cguide/numeric/cone_membership.h"
@@ -29,8 +30,12 @@ struct ConeProposal {
 };
 
 struct ConeWorkspace::Scratch {
+  Scratch();
+  ~Scratch();
+
   ConeProposal proposal;
   std::vector<double> price;
+  std::unique_ptr<Integers> integers;  ///< numeric/cone_exact_internal.h
 };
 
 /** Phase 1 of the simplex method from an artificial basis. */
@@ -62,8 +67,8 @@ bool ProveOutside(const WrenchCone& cone, const WrenchDemand& v, ConeWorkspace::
 /** Whether y.v > 0 for the real v. */
 bool ProvePositiveProduct(const WrenchCone::Vector6d& y, const WrenchDemand& v);
 
-/** The exact stage; `proposal` says where to start. */
+/** The exact stage; the proposal says where to start. */
 exact::ConeMembership DecideExactly(const WrenchCone& cone, const WrenchDemand& v,
-                                    const ConeProposal& proposal);
+                                    ConeWorkspace::Scratch* scratch);
 
 }  // namespace cguide::numeric
