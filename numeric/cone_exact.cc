@@ -2,72 +2,19 @@
 #include <cmath>
 #include <limits>
 
-#include "cguide/exact/core/error.h"
 #include "cguide/numeric/cone_exact_internal.h"
 
-// With six independent generators b_k (the base) and a = sum w_k b_k, w > 0, maximise tau over v =
-// tau a + sum lambda_j a_j, lambda >= 0, tau free. From any base this is feasible: x = B^-1 v - tau
-// w >= 0 for tau = min x_k/w_k. tau > 0: v is interior, with weights tau w_k > 0 on the base. At
-// the optimum the multipliers y have y.a_j <= 0, y.a < 0, and the sign of y.v is minus that of tau:
-// v is outside where tau < 0, and where tau = 0 it is in the closed cone and y supports the cone
+// Starts from the generators of the float basis, which decide most questions: six positive weights,
+// or a row of the inverse that separates or supports. Else (cone_exact_tau.cc), with six
+// independent generators b_k (the base) and a = sum w_k b_k, w > 0, maximise tau over v = tau a +
+// sum lambda_j a_j, lambda >= 0, tau free. From any base this is feasible: x = B^-1 v - tau w >= 0
+// for tau = min x_k/w_k. tau > 0: v is interior, with weights tau w_k > 0 on the base. At the
+// optimum the multipliers y have y.a_j <= 0, y.a < 0, and the sign of y.v is minus that of tau: v
+// is outside where tau < 0, and where tau = 0 it is in the closed cone and y supports the cone
 // there. Everything is an integer; doubles only say which signs need no integers.
 namespace cguide::numeric {
-namespace {
 
 using exact::Membership;
-
-class ExactDecider {
- public:
-  ExactDecider(const WrenchCone& cone, const WrenchDemand& v, ConeWorkspace::Scratch* scratch);
-
-  exact::ConeMembership Run();
-
- private:
-  static constexpr int kUnitColumn = -1;  // a row's own
-  static constexpr int kDirection = -2;   // the column a, with weight tau
-
-  void ChooseUnit(const WrenchDemand& v);
-  const IntegerWrench& Column(int j);
-  void TakeIn(int j, int preferred_row, Integer6* x);
-  bool SeparatesByUnits(exact::ConeMembership* result);
-  bool Complete(exact::ConeMembership* result);
-  bool DecidesBasis(exact::ConeMembership* result);
-  void StartTau();
-  void Maximise(exact::ConeMembership* result);
-  void GoAlong(int ray, exact::ConeMembership* result);
-  int FindImproving(bool lowest_index);
-  int ChooseLeaving(bool lowest_index);
-
-  bool IsNonPositive(const Integer6& y);
-  void SetToRow(int row, bool negative, Integer6* y) const;
-  void PassOver();
-  void Conclude(exact::ConeMembership* result);
-  void ReportWeights(const mpz_class& tau, int ray, const mpz_class& ray_weight,
-                     exact::ConeMembership* result);
-  void ReportSeparator(const Integer6& y, exact::ConeMembership* result) const;
-
-  const WrenchCone& cone_;
-  const ConeProposal& proposal_;
-  ConeWorkspace::Integers& n_;
-  std::vector<double>& price_;
-  int unit_ = 0;
-  int index_[6];
-  int base_[6];         // the generators in a, all w_k = 1 for the integer columns
-  int direction_ = -1;  // the row where tau is basic
-  bool deficient_ = false;
-};
-
-/** numerator/denominator * 2^shift */
-Rational WeightOf(const mpz_class& numerator, const mpz_class& denominator, long shift) {
-  Rational weight(numerator, denominator);
-  weight.canonicalize();
-  if (shift >= 0) {
-    weight <<= static_cast<unsigned long>(shift);
-  } else {
-    weight >>= static_cast<unsigned long>(-shift);
-  }
-  return weight;
-}
 
 ExactDecider::ExactDecider(const WrenchCone& cone, const WrenchDemand& v,
                            ConeWorkspace::Scratch* scratch)
@@ -116,32 +63,26 @@ void ExactDecider::TakeIn(int j, int preferred_row, Integer6* x) {
   index_[row] = j;
 }
 
-/** Signs of y.a_j, by doubles where they tell: the entries of y are rounded towards 0, by at most 2
- u relative, those of a column are below 1 and within the cone's errors; six products. Scaling y by
- a power of two is exact, and so is that of its moments, to be multiplied with wrenches themselves.
- */
-struct SignFilter {
-  double y[6] = {};
-  double error = 0;
-
-  SignFilter(const WrenchCone& cone, const Integer6& exact, int unit) {
-    long exponents[6], highest = std::numeric_limits<long>::min();
-    for (int i = 0; i < 6; ++i) {
-      y[i] = mpz_get_d_2exp(&exponents[i], exact[i].get_mpz_t());
-      if (i >= 3) exponents[i] -= unit;
-      if (exact[i] != 0) highest = std::max(highest, exponents[i]);
-    }
-    double size = 0, columns = 0;
-    for (int i = 0; i < 6; ++i) {
-      const long shift = exponents[i] - highest;  // below 2^-1000 of the largest: 0, within kTiny
-      y[i] = y[i] == 0 || shift < -1000 ? 0 : std::ldexp(y[i], static_cast<int>(shift));
-      size += std::abs(y[i]);
-      columns += std::abs(y[i]) * (i < 3 ? cone.force_error() : cone.moment_error());
-    }
-    error = (12 * 0x1p-53 * size + columns) * (1 + 0x1p-40) + 0x1p-900;
-    if (!cone.in_range()) error = INFINITY;
+// The entries of y are rounded towards 0, by at most 2 u relative, those of a column are below 1
+// and within the cone's errors; six products. Scaling y by a power of two is exact, and so is that
+// of its moments by 2^-unit, which makes it a factor of wrenches as they are.
+SignFilter::SignFilter(const WrenchCone& cone, const Integer6& exact, int unit) {
+  long exponents[6], highest = std::numeric_limits<long>::min();
+  for (int i = 0; i < 6; ++i) {
+    y[i] = mpz_get_d_2exp(&exponents[i], exact[i].get_mpz_t());
+    if (i >= 3) exponents[i] -= unit;
+    if (exact[i] != 0) highest = std::max(highest, exponents[i]);
   }
-};
+  double size = 0, columns = 0;
+  for (int i = 0; i < 6; ++i) {
+    const long shift = exponents[i] - highest;  // below 2^-1000 of the largest: 0, within kTiny
+    y[i] = y[i] == 0 || shift < -1000 ? 0 : std::ldexp(y[i], static_cast<int>(shift));
+    size += std::abs(y[i]);
+    columns += std::abs(y[i]) * (i < 3 ? cone.force_error() : cone.moment_error());
+  }
+  error = (12 * 0x1p-53 * size + columns) * (1 + 0x1p-40) + 0x1p-900;
+  if (!cone.in_range()) error = INFINITY;
+}
 
 // y is a row of the inverse or a sum of some, which is known at the basis: 0 or minus the
 // determinant.
@@ -246,152 +187,21 @@ bool ExactDecider::DecidesBasis(exact::ConeMembership* result) {
     if (n_.x[i] < n_.x[least]) least = i;
   }
   const int sign = sgn(n_.x[least]);
-  result->where = sign > 0   ? Membership::kInterior
-                  : sign < 0 ? Membership::kOutside
-                             : Membership::kBoundary;
-  int row = sign > 0 ? 6 : least;
-  for (; row < 6; ++row) {
-    if (sgn(n_.x[row]) != sign || (sign < 0 && row != least)) continue;
+  if (sign > 0) {
+    result->where = Membership::kInterior;
+    ReportWeights(0, -1, 0, result);
+    return true;
+  }
+  for (int row = least; row < 6; ++row) {
+    if (sign < 0 ? row != least : n_.x[row] != 0) continue;
     SetToRow(row, true, &n_.y);
-    if (IsNonPositive(n_.y)) break;
-  }
-  if (sign <= 0) {
-    if (row == 6) return false;
+    if (!IsNonPositive(n_.y)) continue;
+    result->where = sign < 0 ? Membership::kOutside : Membership::kBoundary;
     ReportSeparator(n_.y, result);
+    if (sign == 0) ReportWeights(0, -1, 0, result);
+    return true;
   }
-  if (sign >= 0) ReportWeights(0, -1, 0, result);
-  return true;
-}
-
-void ExactDecider::StartTau() {
-  std::copy(std::begin(index_), std::end(index_), std::begin(base_));
-  for (int i = 0; i < 6; ++i) {
-    n_.alpha[i] = 0;
-    if (index_[i] == kUnitColumn) continue;
-    n_.alpha[i] = n_.basis.determinant();
-    if (direction_ < 0 || n_.x[i] < n_.x[direction_]) direction_ = i;
-  }
-  if (direction_ < 0) return;
-  n_.basis.Pivot(direction_, n_.alpha, &n_.x);
-  index_[direction_] = kDirection;
-}
-
-// A generator with y.a > 0 for y = minus the row of tau, the best that doubles know or the first.
-int ExactDecider::FindImproving(bool lowest_index) {
-  SetToRow(direction_, true, &n_.y);
-  const SignFilter filter(cone_, n_.y, unit_);
-  const int best = Price(cone_, filter.y, &price_);
-  if (!lowest_index && best >= 0 && price_[best] > filter.error) return best;
-  PassOver();
-  for (int j = 0; j < cone_.size(); ++j) {
-    if (price_[j] < -filter.error) continue;
-    if (price_[j] > filter.error) return j;
-    n_.basis.Product(direction_, Column(j), &n_.sum);
-    if (n_.sum < 0) return j;
-  }
-  return -1;
-}
-
-// The row whose weight reaches zero first: min x_i/alpha_i over alpha_i > 0, ties by the
-// generator's index where Bland's rule asks for it.
-int ExactDecider::ChooseLeaving(bool lowest_index) {
-  const Integer6 &x = n_.x, &alpha = n_.alpha;
-  int row = -1;
-  for (int i = 0; i < 6; ++i) {
-    if (index_[i] < 0 || alpha[i] <= 0) continue;
-    if (row < 0) {
-      row = i;
-      continue;
-    }
-    n_.sum = x[i] * alpha[row];
-    mpz_submul(n_.sum.get_mpz_t(), x[row].get_mpz_t(), alpha[i].get_mpz_t());
-    const int order = sgn(n_.sum);
-    const bool tie = lowest_index ? index_[i] < index_[row] : alpha[i] > alpha[row];
-    if (order < 0 || (order == 0 && tie)) row = i;
-  }
-  return row;
-}
-
-// Dantzig's rule, and Bland's [1977], which ends, once many pivots have brought nothing.
-void ExactDecider::Maximise(exact::ConeMembership* result) {
-  constexpr int kPatience = 20;
-  int idle = 0;
-  while (true) {
-    const int sign = sgn(n_.x[direction_]);
-    if (sign > 0 || (deficient_ && sign == 0)) break;
-    const bool bland = idle > kPatience;
-    const int entering = FindImproving(bland);
-    if (entering < 0) break;
-    n_.basis.Transform(Column(entering), &n_.alpha);
-    const int row = ChooseLeaving(bland);
-    if (row < 0) {
-      GoAlong(entering, result);
-      return;
-    }
-    idle = n_.x[row] == 0 ? idle + 1 : 0;
-    n_.basis.Pivot(row, n_.alpha, &n_.x);
-    index_[row] = entering;
-  }
-  Conclude(result);
-}
-
-// tau grows without bound with the weight of a generator: go where it is at least 1.
-void ExactDecider::GoAlong(int ray, exact::ConeMembership* result) {
-  const mpz_class rate = -n_.alpha[direction_];
-  const mpz_class needed = n_.basis.determinant() - n_.x[direction_];
-  const mpz_class weight = needed / rate + 1;
-  for (int i = 0; i < 6; ++i) n_.x[i] -= weight * n_.alpha[i];
-  result->where = deficient_ ? Membership::kBoundary : Membership::kInterior;
-  ReportWeights(n_.x[direction_], ray, weight * n_.basis.determinant(), result);
-  if (!deficient_) return;
-  int row = 0;
-  while (index_[row] != kUnitColumn) ++row;
-  SetToRow(row, true, &n_.y);
-  ReportSeparator(n_.y, result);
-}
-
-// tau on the base, the basic weights, and that of the ray. Weights of integer columns become those
-// of generators by powers of two.
-void ExactDecider::ReportWeights(const mpz_class& tau, int ray, const mpz_class& ray_weight,
-                                 exact::ConeMembership* result) {
-  int used[16], *end = used;
-  for (int i = 0; i < 6; ++i) {
-    if (index_[i] >= 0) *end++ = index_[i];
-    if (base_[i] >= 0 && tau != 0) *end++ = base_[i];
-  }
-  if (ray >= 0) *end++ = ray;
-  std::sort(used, end);
-  end = std::unique(used, end);
-  for (const int* j = used; j != end; ++j) {
-    n_.sum = 0;
-    if (*j == ray) n_.sum += ray_weight;
-    for (int i = 0; i < 6; ++i) {
-      if (index_[i] == *j) n_.sum += n_.x[i];
-      if (base_[i] == *j) n_.sum += tau;
-    }
-    if (n_.sum == 0) continue;
-    result->index.push_back(*j);
-    result->weight.push_back(
-        WeightOf(n_.sum, n_.basis.determinant(), Column(*j).exponent - n_.demand.exponent));
-  }
-}
-
-void ExactDecider::Conclude(exact::ConeMembership* result) {
-  int row = direction_;
-  for (int i = 0; deficient_ && i < 6; ++i) {
-    if (index_[i] == kUnitColumn) row = i;
-  }
-  const mpz_class tau = direction_ < 0 ? mpz_class(0) : n_.x[direction_];
-  if (tau < 0) {
-    result->where = Membership::kOutside;
-    row = direction_;
-  } else {
-    ReportWeights(tau, -1, 0, result);
-    result->where = tau > 0 && !deficient_ ? Membership::kInterior : Membership::kBoundary;
-    if (result->where == Membership::kInterior) return;
-  }
-  SetToRow(row, true, &n_.y);
-  ReportSeparator(n_.y, result);
+  return false;
 }
 
 exact::ConeMembership ExactDecider::Run() {
@@ -412,39 +222,6 @@ exact::ConeMembership ExactDecider::Run() {
   return result;
 }
 
-/** The weights of v on six generators, by integer elimination. */
-exact::ConeMembership ExactWeights(const WrenchCone& cone, const WrenchDemand& v,
-                                   const ConeAnswer& answer) {
-  IntegerWrench demand, columns[6];
-  IntegerDemand(v, 0, &demand);
-  IntegerBasis basis;
-  basis.Reset();
-  exact::ConeMembership proof;
-  proof.where = Membership::kInterior;
-  int row_of[6];
-  bool taken[6] = {};
-  Integer6 alpha;
-  for (int k = 0; k < 6; ++k) {
-    IntegerColumn(cone, answer.basis[k], 0, &columns[k]);
-    basis.Transform(columns[k], &alpha);
-    int row = 0;
-    while (row < 6 && (taken[row] || alpha[row] == 0)) ++row;
-    if (row == 6) throw Error(Error::Code::kInternal, "a proven basis is singular");
-    basis.Pivot(row, alpha, nullptr);
-    taken[row] = true;
-    row_of[k] = row;
-  }
-  basis.Transform(demand, &alpha);
-  for (int k = 0; k < 6; ++k) {
-    proof.index.push_back(answer.basis[k]);
-    proof.weight.push_back(
-        WeightOf(alpha[row_of[k]], basis.determinant(), columns[k].exponent - demand.exponent));
-  }
-  return proof;
-}
-
-}  // namespace
-
 ConeWorkspace::Scratch::Scratch() = default;
 ConeWorkspace::Scratch::~Scratch() = default;
 
@@ -452,17 +229,6 @@ exact::ConeMembership DecideExactly(const WrenchCone& cone, const WrenchDemand& 
                                     ConeWorkspace::Scratch* scratch) {
   if (scratch->integers == nullptr) scratch->integers = std::make_unique<ConeWorkspace::Integers>();
   return ExactDecider(cone, v, scratch).Run();
-}
-
-exact::ConeMembership ExactProof(const WrenchCone& cone, const WrenchDemand& v,
-                                 const ConeAnswer& answer) {
-  if (answer.proof) return *answer.proof;
-  if (answer.where == Membership::kInterior) return ExactWeights(cone, v, answer);
-  exact::ConeMembership proof;
-  proof.where = answer.where;
-  proof.y.resize(6);
-  for (int k = 0; k < 6; ++k) proof.y[k] = Lift(answer.y[k]);
-  return proof;
 }
 
 }  // namespace cguide::numeric

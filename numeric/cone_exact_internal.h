@@ -83,4 +83,57 @@ struct ConeWorkspace::Integers {
   std::vector<int> column_of;          ///< of a generator, -1: not yet asked for
 };
 
+/** Signs of y.a_j, by doubles where they tell: those of price_j beyond +-error. */
+struct SignFilter {
+  double y[6] = {};
+  double error = 0;
+
+  SignFilter(const WrenchCone& cone, const Integer6& exact, int unit);
+};
+
+/** numerator/denominator * 2^shift */
+Rational WeightOf(const mpz_class& numerator, const mpz_class& denominator, long shift);
+
+/** One question of the exact stage. */
+class ExactDecider {
+ public:
+  ExactDecider(const WrenchCone& cone, const WrenchDemand& v, ConeWorkspace::Scratch* scratch);
+
+  exact::ConeMembership Run();
+
+ private:
+  static constexpr int kUnitColumn = -1;  // a row's own
+  static constexpr int kDirection = -2;   // the column a, with weight tau
+
+  void ChooseUnit(const WrenchDemand& v);
+  const IntegerWrench& Column(int j);
+  void TakeIn(int j, int preferred_row, Integer6* x);
+  bool SeparatesByUnits(exact::ConeMembership* result);
+  bool Complete(exact::ConeMembership* result);
+  bool DecidesBasis(exact::ConeMembership* result);
+  void StartTau();
+  void Maximise(exact::ConeMembership* result);
+  void GoAlong(int ray, exact::ConeMembership* result);
+  int FindImproving(bool lowest_index);
+  int ChooseLeaving(bool lowest_index);
+
+  bool IsNonPositive(const Integer6& y);
+  void SetToRow(int row, bool negative, Integer6* y) const;
+  void PassOver();
+  void Conclude(exact::ConeMembership* result);
+  void ReportWeights(const mpz_class& tau, int ray, const mpz_class& ray_weight,
+                     exact::ConeMembership* result);
+  void ReportSeparator(const Integer6& y, exact::ConeMembership* result) const;
+
+  const WrenchCone& cone_;
+  const ConeProposal& proposal_;
+  ConeWorkspace::Integers& n_;
+  std::vector<double>& price_;
+  int unit_ = 0;
+  int index_[6];
+  int base_[6];         // the generators in a, all w_k = 1 for the integer columns
+  int direction_ = -1;  // the row where tau is basic
+  bool deficient_ = false;
+};
+
 }  // namespace cguide::numeric
