@@ -174,6 +174,27 @@ CGUIDE_INLINE void Halve(const Quad& v, Duo* low, Duo* high) {
   *high = __builtin_shufflevector(v, v, 2, 3);
 }
 
+/** The first numbers of eight pairs, and the second ones. */
+CGUIDE_INLINE void Unzip(const Duo (&pair)[8], Wide8* first, Wide8* second) {
+  Quad half[4];
+  for (int i = 0; i < 4; ++i) {
+    const int l = i / 2 * 4 + i % 2;
+    half[i] = __builtin_shufflevector(pair[l], pair[l + 2], 0, 1, 2, 3);
+  }
+  const Wide8::Part even = __builtin_shufflevector(half[0], half[2], 0, 1, 2, 3, 4, 5, 6, 7),
+                    odd = __builtin_shufflevector(half[1], half[3], 0, 1, 2, 3, 4, 5, 6, 7);
+  first->part[0] = __builtin_shufflevector(even, odd, 0, 8, 2, 10, 4, 12, 6, 14);
+  second->part[0] = __builtin_shufflevector(even, odd, 1, 9, 3, 11, 5, 13, 7, 15);
+}
+CGUIDE_INLINE void Unzip(const Duo (&pair)[8], Pair8* first, Pair8* second) {
+  for (int i = 0; i < 2; ++i) {
+    const Quad even = __builtin_shufflevector(pair[4 * i], pair[4 * i + 2], 0, 1, 2, 3),
+               odd = __builtin_shufflevector(pair[4 * i + 1], pair[4 * i + 3], 0, 1, 2, 3);
+    first->part[i] = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
+    second->part[i] = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+  }
+}
+
 /** The largest of eight values: three comparisons deep, without branches. */
 template <Lanes8 V>
 CGUIDE_INLINE double Largest(const V& v) {

@@ -56,4 +56,18 @@ TEST_CASE("Six numbers are loaded at any distance, before two zeros") {
   }
 }
 
+TEST_CASE("Pairs are taken apart in their order") {
+  Duo pair[8];
+  for (int i = 0; i < 8; ++i) pair[i] = Duo{static_cast<double>(i), 10.0 + i};
+  V first, second;
+  Unzip(pair, &first, &second);
+  double x[8], y[8];
+  Store(first, x);
+  Store(second, y);
+  for (int i = 0; i < 8; ++i) {
+    CHECK(x[i] == i);
+    CHECK(y[i] == 10 + i);
+  }
+}
+
 }  // namespace cguide::numeric
