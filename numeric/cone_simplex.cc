@@ -19,9 +19,8 @@ constexpr double kPriceTolerance = 1e-11;  // of |y|_1: no column improves by mo
 constexpr double kPivotTolerance = 1e-9;   // smallest divisor in the ratio test
 constexpr double kZero = 1e-13;            // of |v|: a weight that counts as none
 constexpr double kAllowance = 1e-13;       // of weights, in the ratio test
+constexpr double kLowest = -0x1p1000;      // below every ratio
 constexpr int kMaxPivots = 100;
-
-constexpr double kLowest = -0x1p1000;  // below every ratio
 
 /** The scaled columns by rows. */
 struct Columns {
@@ -29,9 +28,9 @@ struct Columns {
   std::size_t n;
   std::uint64_t mask;  ///< n - 1 rounded up to ones
 
-  CGUIDE_INLINE Columns(const double* rows, std::size_t stride, std::size_t size)
-      : n(size), mask(std::bit_ceil(size) - 1) {
-    for (std::size_t i = 0; i < 6; ++i) row[i] = rows + i * stride;
+  explicit Columns(const WrenchCone& cone)
+      : n(static_cast<std::size_t>(cone.padded_size())), mask(std::bit_ceil(n) - 1) {
+    for (int i = 0; i < 6; ++i) row[i] = cone.row(i);
   }
 };
 
@@ -55,11 +54,6 @@ CGUIDE_INLINE V Transform(const Columns& a, std::size_t j, const Matrix6& R) {
   return ((term[0] + term[1]) + (term[2] + term[3])) + (term[4] + term[5]);
 }
 
-/** What a pivot may need of any row, before it is known which. */
-struct alignas(64) PivotRows {
-  double divisor[8], theta[8], price[8];
-};
-
 // The row that reaches zero first, by Harris' ratio test [1973]: weights a little larger than they
 // are make the larger divisor win among (nearly) equal ones, and the smaller allowance an
 // artificial column. -1 without one.
@@ -73,9 +67,18 @@ CGUIDE_INLINE int ChooseLeaving(const V& x, const V& alpha, const V& artificial)
   return first > 0.5 * kLowest ? static_cast<int>(LabelOf(first, kMask)) : -1;
 }
 
+/** Weights, which rows have artificial columns left (1, else 0), and the inverse of the basis. */
+template <typename V>
+struct Tableau {
+  V x, artificial;
+  Matrix6* R;
+};
+
 /** From the artificial basis: the unit vectors with the signs of v. */
 template <typename V>
-CGUIDE_INLINE V StartFromArtificials(const double* demand, ConeProposal* p, double (&y)[6]) {
+CGUIDE_INLINE Tableau<V> StartFromArtificials(const double* demand, ConeProposal* p,
+                                              double (&y)[6]) {
+  constexpr double kAllRows[8] = {1, 1, 1, 1, 1, 1, 0, 0};
   const V v = LoadSix<V>(demand), one = Lanes<V>(1), sign = IfGreater(V{}, v, -one, one);
   double signs[8];
   Store(sign, signs);
@@ -84,7 +87,34 @@ CGUIDE_INLINE V StartFromArtificials(const double* demand, ConeProposal* p, doub
     Store(sign * Load<V>(kUnitLane[k]), p->inverse.c[k]);
     p->basis[k] = -1;
   }
-  return Absolute(v);
+  return {Absolute(v), Load<V>(kAllRows), &p->inverse};
+}
+
+/** What a pivot may need of any row, before it is known which. */
+struct alignas(64) PivotRows {
+  double divisor[8], theta[8], price[8];
+};
+
+template <typename V>
+CGUIDE_INLINE void Prepare(const Tableau<V>& t, const V& alpha, PivotRows* of) {
+  const V divisor = Lanes<V>(1) / alpha;
+  Store(divisor, of->divisor);
+  Store(t.x * divisor, of->theta);
+  Store(Sum(t.artificial * alpha) * divisor, of->price);
+}
+
+// With moved = alpha - e_row in place of alpha one formula serves all rows: R_row - (alpha_row - 1)
+// R_row/alpha_row = R_row/alpha_row [Dantzig 1963, revised method].
+template <typename V>
+CGUIDE_INLINE void Pivot(int row, const PivotRows& of, const V& alpha, const double (&entries)[6],
+                         Tableau<V>* t) {
+  const V unit = Load<V>(kUnitLane[row]), moved = alpha - unit;
+  t->x = Larger(t->x - moved * of.theta[row], V{});
+  t->artificial -= t->artificial * unit;
+  for (int k = 0; k < 6; ++k) {
+    double* column = t->R->c[k];
+    Store(Load<V>(column) - moved * (entries[k] * of.divisor[row]), column);
+  }
 }
 
 CGUIDE_INLINE double SizeOf(const double (&y)[6]) {
@@ -92,72 +122,53 @@ CGUIDE_INLINE double SizeOf(const double (&y)[6]) {
          (std::abs(y[4]) + std::abs(y[5]));
 }
 
-// With moved = alpha - e_row in place of alpha one formula serves all rows: R_row - (alpha_row - 1)
-// R_row/alpha_row = R_row/alpha_row. The multipliers move by -price times the new row [Dantzig
-// 1963, revised method]. They go first, and the next prices with them, which all that follows waits
-// for.
+// The multipliers move by -price times the new row. They go first, and the next prices with them,
+// which all that follows waits for.
 template <typename V>
-CGUIDE_INLINE void PhaseOneKernel(const double* __restrict rows, std::size_t stride, std::size_t n,
-                                  const double* __restrict demand,
-                                  ConeProposal* __restrict proposal) {
-  ConeProposal& p = *proposal;
-  constexpr double kAllRows[8] = {1, 1, 1, 1, 1, 1, 0, 0};
-  const Columns a(rows, stride, n);
+CGUIDE_INLINE void PhaseOneKernel(const Columns& a, const double* __restrict demand,
+                                  ConeProposal* __restrict p) {
   double y[6], entries[6];
-  V x = StartFromArtificials<V>(demand, &p, y), artificial = Load<V>(kAllRows);
+  Tableau<V> t = StartFromArtificials<V>(demand, p, y);
   int pivots = 0;
   bool feasible = false;
-  double best = n == 0 ? 0 : Dearest<V>(a, y);
+  double best = a.n == 0 ? 0 : Dearest<V>(a, y);
   for (; pivots < kMaxPivots; ++pivots) {
-    feasible = Sum(artificial * x) <= kZero;
+    feasible = Sum(t.artificial * t.x) <= kZero;
     if (feasible || !(best > kPriceTolerance * SizeOf(y))) break;
     const auto entering = static_cast<std::size_t>(LabelOf(best, a.mask));
-    const V alpha = Transform<V>(a, entering, p.inverse);
-    const int row = ChooseLeaving(x, alpha, artificial);
-    const V divisor = Lanes<V>(1) / alpha;
+    const V alpha = Transform<V>(a, entering, p->inverse);
+    const int row = ChooseLeaving(t.x, alpha, t.artificial);
     PivotRows of;
-    Store(divisor, of.divisor);
-    Store(x * divisor, of.theta);
-    Store(Sum(artificial * alpha) * divisor, of.price);
+    Prepare(t, alpha, &of);
     if (row < 0) break;
     for (int k = 0; k < 6; ++k) {
-      entries[k] = p.inverse.c[k][row];
+      entries[k] = p->inverse.c[k][row];
       y[k] -= entries[k] * of.price[row];
     }
     best = Dearest<V>(a, y);
-    const V unit = Load<V>(kUnitLane[row]), moved = alpha - unit;
-    x = Larger(x - moved * of.theta[row], V{});
-    artificial -= artificial * unit;
-    for (int k = 0; k < 6; ++k) {
-      Store(Load<V>(p.inverse.c[k]) - moved * (entries[k] * of.divisor[row]), p.inverse.c[k]);
-    }
-    p.basis[row] = static_cast<int>(entering);
+    Pivot(row, of, alpha, entries, &t);
+    p->basis[row] = static_cast<int>(entering);
   }
-  p.feasible = feasible;
-  p.pivots = pivots;
-  Store(x, p.x);
-  Store(artificial, p.artificial);
+  p->feasible = feasible;
+  p->pivots = pivots;
+  Store(t.x, p->x);
+  Store(t.artificial, p->artificial);
   if (feasible) return;
   // The multipliers anew: the sum of the artificial rows.
-  for (int k = 0; k < 6; ++k) p.y[k] = Sum(artificial * Load<V>(p.inverse.c[k]));
+  for (int k = 0; k < 6; ++k) p->y[k] = Sum(t.artificial * Load<V>(p->inverse.c[k]));
 }
 
 template <typename V>
-CGUIDE_INLINE int PriceKernel(const double* rows, std::size_t stride, std::size_t n,
-                              const double (&y)[6], double* price) {
-  const Columns a(rows, stride, n);
-  for (std::size_t j = 0; j < n; j += 8) Store(ColumnProducts<V>(a.row, j, y), price + j);
+CGUIDE_INLINE int PriceKernel(const Columns& a, const double (&y)[6], double* price) {
+  for (std::size_t j = 0; j < a.n; j += 8) Store(ColumnProducts<V>(a.row, j, y), price + j);
   return static_cast<int>(LabelOf(Dearest<V>(a, y), a.mask));
 }
 
 CGUIDE_DISPATCH(void, RunPhaseOne, PhaseOneKernel,
-                (const double* rows, std::size_t stride, std::size_t n, const double* demand,
-                 ConeProposal* proposal),
-                (rows, stride, n, demand, proposal))
-CGUIDE_DISPATCH(int, PriceAll, PriceKernel,
-                (const double* rows, std::size_t stride, std::size_t n, const double (&y)[6],
-                 double* price),
-                (rows, stride, n, y, price))
+                (const Columns& a, const double* demand, ConeProposal* proposal),
+                (a, demand, proposal))
+CGUIDE_DISPATCH(int, PriceAll, PriceKernel, (const Columns& a, const double (&y)[6], double* price),
+                (a, y, price))
 
 // The rare pivot outside the loop.
 void PivotPlainly(const WrenchCone& cone, int j, int row, Matrix6* R) {
@@ -199,19 +210,16 @@ bool DriveOutArtificials(const WrenchCone& cone, ConeWorkspace::Scratch* scratch
 }  // namespace
 
 int Price(const WrenchCone& cone, const double (&y)[6], std::vector<double>* price) {
-  const auto n = static_cast<std::size_t>(cone.padded_size());
-  price->resize(n);
-  return n == 0 ? -1 : PriceAll(cone.row(0), cone.stride(), n, y, price->data());
+  const Columns a(cone);
+  price->resize(a.n);
+  return a.n == 0 ? -1 : PriceAll(a, y, price->data());
 }
 
 void SolvePhaseOne(const WrenchCone& cone, const WrenchDemand& v, ConeWorkspace::Scratch* scratch) {
   ConeProposal& p = scratch->proposal;
-  const auto n = static_cast<std::size_t>(cone.padded_size());
-  RunPhaseOne(cone.row(0), cone.stride(), n, v.scaled().data(), &p);
-  p.full_rank = false;
-  if (!p.feasible) return;
-  p.full_rank = *std::min_element(std::begin(p.basis), std::end(p.basis)) >= 0 ||
-                DriveOutArtificials(cone, scratch);
+  RunPhaseOne(Columns(cone), v.scaled().data(), &p);
+  p.full_rank = p.feasible && (*std::min_element(std::begin(p.basis), std::end(p.basis)) >= 0 ||
+                               DriveOutArtificials(cone, scratch));
 }
 
 }  // namespace cguide::numeric
