@@ -17,9 +17,10 @@ using exact::Membership;
 void ReportBasis(const WrenchCone& cone, const WrenchDemand& v, const int (&basis)[6],
                  const double (&x)[8], ConeAnswer* answer) {
   answer->where = Membership::kInterior;
+  const double unscale = std::ldexp(1.0, v.scale_exponent());
   for (int k = 0; k < 6; ++k) {
     answer->basis[k] = basis[k];
-    answer->weight[k] = std::ldexp(x[k], v.scale_exponent() - cone.scale_exponent(basis[k]));
+    answer->weight[k] = x[k] * cone.scale(basis[k]) * unscale;
   }
 }
 

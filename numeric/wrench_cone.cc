@@ -231,10 +231,6 @@ void WrenchCone::LookAtOddColumns() {
   if (!is_finite_) in_range_ = false;
 }
 
-int WrenchCone::scale_exponent(int j) const {
-  return -std::ilogb(entries_[6 * stride_ + static_cast<std::size_t>(j)]);
-}
-
 VectorXq WrenchCone::Exact(int j) const {
   Require(j >= 0 && j < size_, "no such generator");
   if (!forces_.empty()) return exact::WrenchOf(forces_[j]);
