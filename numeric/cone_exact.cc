@@ -1,142 +1,148 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <limits>
 
-#include "cguide/exact/core/error.h"
 #include "cguide/numeric/cone_exact_internal.h"
 
-// With six independent generators b_k (the base) and a = sum w_k b_k, w > 0, maximise tau over v =
-// tau a + sum lambda_j a_j, lambda >= 0, tau free. From any base this is feasible: x = B^-1 v - tau
-// w >= 0 for tau = min x_k/w_k. tau > 0: v is interior, with weights tau w_k > 0 on the base. At
-// the optimum the multipliers y have y.a_j <= 0, y.a < 0, and the sign of y.v is minus that of tau:
-// v is outside where tau < 0, and where tau = 0 it is in the closed cone and y supports the cone
+// Starts from the generators of the float basis, which decide most questions: six positive weights,
+// or a row of the inverse that separates or supports. Else (cone_exact_tau.cc), with six
+// independent generators b_k (the base) and a = sum w_k b_k, w > 0, maximise tau over v = tau a +
+// sum lambda_j a_j, lambda >= 0, tau free. From any base this is feasible: x = B^-1 v - tau w >= 0
+// for tau = min x_k/w_k. tau > 0: v is interior, with weights tau w_k > 0 on the base. At the
+// optimum the multipliers y have y.a_j <= 0, y.a < 0, and the sign of y.v is minus that of tau: v
+// is outside where tau < 0, and where tau = 0 it is in the closed cone and y supports the cone
 // there. Everything is an integer; doubles only say which signs need no integers.
 namespace cguide::numeric {
-namespace {
 
 using exact::Membership;
 
-class ExactDecider {
- public:
-  ExactDecider(const WrenchCone& cone, const WrenchDemand& v)
-      : cone_(cone), v_(IntegerDemand(v)), columns_(cone.size()), basis_(v_) {
-    std::fill(std::begin(base_), std::end(base_), kUnit);
-    std::fill(std::begin(index_), std::end(index_), kUnit);
+ExactDecider::ExactDecider(const WrenchCone& cone, const WrenchDemand& v,
+                           ConeWorkspace::Scratch* scratch)
+    : cone_(cone), proposal_(scratch->proposal), n_(*scratch->integers), price_(scratch->price) {
+  std::fill(std::begin(base_), std::end(base_), kUnitColumn);
+  std::fill(std::begin(index_), std::end(index_), kUnitColumn);
+  ChooseUnit(v);
+  IntegerDemand(v, unit_, &n_.demand);
+  n_.basis.Reset();
+  n_.x = n_.demand.a;
+  n_.used = 0;
+  n_.column_of.assign(static_cast<std::size_t>(cone.size()), -1);
+}
+
+// That of the points the basis acts at; any would do.
+void ExactDecider::ChooseUnit(const WrenchDemand& v) {
+  constexpr int kLeast = -128;
+  if (v.is_force()) unit_ = std::min(unit_, LastBit(v.force().p));
+  for (const int j : proposal_.basis) {
+    if (j >= 0 && !cone_.forces().empty()) unit_ = std::min(unit_, LastBit(cone_.forces()[j].p));
   }
-
-  exact::ConeMembership Run(const ConeProposal& proposal);
-
- private:
-  static constexpr int kUnit = -1;       // a row's own unit column
-  static constexpr int kDirection = -2;  // the column a, with weight tau
-
-  const IntegerWrench& Column(int j);
-  void TakeIn(int j, int preferred_row);
-  bool SeparatesByUnits(exact::ConeMembership* result);
-  bool Complete(exact::ConeMembership* result);
-  void StartTau();
-  void Maximise(exact::ConeMembership* result);
-  int FindImproving(bool lowest_index);
-  int ChooseLeaving(const std::array<mpz_class, 6>& alpha, bool lowest_index) const;
-
-  bool IsNonPositive(const std::array<mpz_class, 6>& y);
-  void ReportWeights(const mpz_class& ray_weight, int ray, exact::ConeMembership* result) const;
-  void ReportRow(int row, int sign, exact::ConeMembership* result) const;
-
-  const WrenchCone& cone_;
-  const IntegerWrench v_;
-  std::vector<std::optional<IntegerWrench>> columns_;
-  IntegerBasis basis_;
-  int index_[6];
-  int base_[6];         // the generators in a, all w_k = 1 for the integer columns
-  int direction_ = -1;  // the row where tau is basic
-  bool deficient_ = false;
-  std::vector<double> price_;
-};
+  unit_ = std::max(unit_, kLeast);
+}
 
 const IntegerWrench& ExactDecider::Column(int j) {
-  if (!columns_[j]) columns_[j] = IntegerColumn(cone_, j);
-  return *columns_[j];
+  int& k = n_.column_of[static_cast<std::size_t>(j)];
+  if (k < 0) {
+    k = n_.used++;
+    if (n_.used > static_cast<int>(n_.columns.size())) n_.columns.emplace_back();
+    IntegerColumn(cone_, j, unit_, &n_.columns[static_cast<std::size_t>(k)]);
+  }
+  return n_.columns[static_cast<std::size_t>(k)];
 }
 
 // In a row that still has its unit column, if the generator is independent of what is there.
-void ExactDecider::TakeIn(int j, int preferred_row) {
+void ExactDecider::TakeIn(int j, int preferred_row, Integer6* x) {
   if (std::find(std::begin(index_), std::end(index_), j) != std::end(index_)) return;
-  const std::array<mpz_class, 6> alpha = basis_.Transform(Column(j));
+  n_.basis.Transform(Column(j), &n_.alpha);
   int row = preferred_row;
-  if (index_[row] != kUnit || alpha[row] == 0) {
+  if (index_[row] != kUnitColumn || n_.alpha[row] == 0) {
     row = 0;
-    while (row < 6 && (index_[row] != kUnit || alpha[row] == 0)) ++row;
+    while (row < 6 && (index_[row] != kUnitColumn || n_.alpha[row] == 0)) ++row;
   }
   if (row == 6) return;
-  basis_.Pivot(row, alpha);
+  n_.basis.Pivot(row, n_.alpha, x);
   index_[row] = j;
 }
 
-/** Signs of y.a_j, by doubles where they tell: the entries of y are rounded towards 0, by at most 2
- u relative, those of a column are below 1 and within the cone's errors; six products. Scaling y by
- a power of two is exact. */
-struct SignFilter {
-  double y[6] = {};
-  double error = 0;
-
-  SignFilter(const WrenchCone& cone, const std::array<mpz_class, 6>& exact) {
-    long exponents[6], highest = std::numeric_limits<long>::min();
-    for (int i = 0; i < 6; ++i) {
-      y[i] = mpz_get_d_2exp(&exponents[i], exact[i].get_mpz_t());
-      if (exact[i] != 0) highest = std::max(highest, exponents[i]);
-    }
-    double size = 0, columns = 0;
-    for (int i = 0; i < 6; ++i) {
-      const long shift = exponents[i] - highest;  // below 2^-1000 of the largest: 0, within kTiny
-      y[i] = y[i] == 0 || shift < -1000 ? 0 : std::ldexp(y[i], static_cast<int>(shift));
-      size += std::abs(y[i]);
-      columns += std::abs(y[i]) * (i < 3 ? cone.force_error() : cone.moment_error());
-    }
-    error = (12 * 0x1p-53 * size + columns) * (1 + 0x1p-40) + 0x1p-900;
-    if (!cone.in_range()) error = INFINITY;
+// The entries of y are rounded towards 0, by at most 2 u relative, those of a column are below 1
+// and within the cone's errors; six products. Scaling y by a power of two is exact, and so is that
+// of its moments by 2^-unit, which makes it a factor of wrenches as they are.
+SignFilter::SignFilter(const WrenchCone& cone, const Integer6& exact, int unit) {
+  long exponents[6], highest = std::numeric_limits<long>::min();
+  for (int i = 0; i < 6; ++i) {
+    y[i] = mpz_get_d_2exp(&exponents[i], exact[i].get_mpz_t());
+    if (i >= 3) exponents[i] -= unit;
+    if (exact[i] != 0) highest = std::max(highest, exponents[i]);
   }
-};
+  double size = 0, columns = 0;
+  for (int i = 0; i < 6; ++i) {
+    const long shift = exponents[i] - highest;  // below 2^-1000 of the largest: 0, within kTiny
+    y[i] = y[i] == 0 || shift < -1000 ? 0 : std::ldexp(y[i], static_cast<int>(shift));
+    size += std::abs(y[i]);
+    columns += std::abs(y[i]) * (i < 3 ? cone.force_error() : cone.moment_error());
+  }
+  error = (12 * 0x1p-53 * size + columns) * (1 + 0x1p-40) + 0x1p-900;
+  if (!cone.in_range()) error = INFINITY;
+}
 
-bool ExactDecider::IsNonPositive(const std::array<mpz_class, 6>& y) {
-  const SignFilter filter(cone_, y);
-  Price(cone_, filter.y, &price_);
+// y is a row of the inverse or a sum of some, which is known at the basis: 0 or minus the
+// determinant.
+bool ExactDecider::IsNonPositive(const Integer6& y) {
+  const SignFilter filter(cone_, y, unit_);
+  const int best = Price(cone_, filter.y, &price_);
+  if (best >= 0 && price_[best] > filter.error) return false;
+  PassOver();
   for (int j = 0; j < cone_.size(); ++j) {
     if (price_[j] < -filter.error) continue;
-    if (price_[j] > filter.error) return false;
     const IntegerWrench& a = Column(j);
-    mpz_class sum = 0;
-    for (int k = 0; k < 6; ++k) sum += y[k] * a.a[k];
-    if (sum > 0) return false;
+    n_.sum = 0;
+    for (int k = 0; k < 6; ++k) n_.sum += y[k] * a.a[k];
+    if (n_.sum > 0) return false;
   }
   return true;
 }
 
-void ExactDecider::ReportRow(int row, int sign, exact::ConeMembership* result) const {
+// The basis needs no prices.
+void ExactDecider::PassOver() {
+  for (const int j : index_) {
+    if (j >= 0) price_[j] = -INFINITY;
+  }
+}
+
+void ExactDecider::SetToRow(int row, bool negative, Integer6* y) const {
+  for (int k = 0; k < 6; ++k) {
+    (*y)[k] = n_.basis.entry(row, k);
+    if (negative) mpz_neg((*y)[k].get_mpz_t(), (*y)[k].get_mpz_t());
+  }
+}
+
+// (f, m 2^-unit) . y is (f, m) . y', y' with the moments of y times 2^-unit.
+void ExactDecider::ReportSeparator(const Integer6& y, exact::ConeMembership* result) const {
   result->y.resize(6);
-  for (int k = 0; k < 6; ++k) result->y[k] = sign * basis_.entry(row, k);
+  for (int k = 0; k < 6; ++k) {
+    result->y[k] = k < 3 ? y[k] : mpz_class(y[k] << static_cast<unsigned>(-unit_));
+  }
 }
 
 // The multipliers of phase 1 at this basis: the sum of the rows of the unit columns in use, with
-// the signs of their weights, so that y.v > 0.
+// the signs of their weights, so that y.v > 0; a unit of force like one of moment.
 bool ExactDecider::SeparatesByUnits(exact::ConeMembership* result) {
-  std::array<mpz_class, 6> y;
+  std::fill(n_.y.begin(), n_.y.end(), 0);
   bool any = false;
   for (int i = 0; i < 6; ++i) {
-    if (index_[i] != kUnit || basis_.x(i) == 0) continue;
+    if (index_[i] != kUnitColumn || n_.x[i] == 0) continue;
     any = true;
     for (int k = 0; k < 6; ++k) {
-      if (basis_.x(i) > 0) {
-        y[k] += basis_.entry(i, k);
+      n_.sum = n_.basis.entry(i, k) << static_cast<unsigned>(i < 3 ? -unit_ : 0);
+      if (n_.x[i] > 0) {
+        n_.y[k] += n_.sum;
       } else {
-        y[k] -= basis_.entry(i, k);
+        n_.y[k] -= n_.sum;
       }
     }
   }
-  if (!any || !IsNonPositive(y)) return false;
+  if (!any || !IsNonPositive(n_.y)) return false;
   result->where = Membership::kOutside;
-  result->y.resize(6);
-  for (int k = 0; k < 6; ++k) result->y[k] = y[k];
+  ReportSeparator(n_.y, result);
   return true;
 }
 
@@ -144,217 +150,85 @@ bool ExactDecider::SeparatesByUnits(exact::ConeMembership* result) {
 // part along it, it separates.
 bool ExactDecider::Complete(exact::ConeMembership* result) {
   for (int row = 0; row < 6; ++row) {
-    if (index_[row] != kUnit) continue;
-    std::array<mpz_class, 6> y;
-    for (int k = 0; k < 6; ++k) y[k] = basis_.entry(row, k);
-    const SignFilter filter(cone_, y);
+    if (index_[row] != kUnitColumn) continue;
+    const SignFilter filter(cone_, n_.basis.row(row), unit_);
     Price(cone_, filter.y, &price_);
     int best = -1;
     for (int j = 0; j < cone_.size(); ++j) {
       if (best < 0 || std::abs(price_[j]) > std::abs(price_[best])) best = j;
     }
     if (best >= 0 && !(std::abs(price_[best]) > filter.error)) {
-      best = 0;
-      while (best < cone_.size() && basis_.Product(row, Column(best)) == 0) ++best;
+      for (best = 0; best < cone_.size(); ++best) {
+        n_.basis.Product(row, Column(best), &n_.sum);
+        if (n_.sum != 0) break;
+      }
       if (best == cone_.size()) best = -1;
     }
     if (best >= 0) {
-      TakeIn(best, row);
+      TakeIn(best, row, &n_.x);
       continue;
     }
     deficient_ = true;
-    if (basis_.x(row) == 0) continue;
+    if (n_.x[row] == 0) continue;
     result->where = Membership::kOutside;
-    ReportRow(row, basis_.x(row) > 0 ? 1 : -1, result);
+    SetToRow(row, n_.x[row] < 0, &n_.y);
+    ReportSeparator(n_.y, result);
     return true;
   }
   return false;
 }
 
-void ExactDecider::StartTau() {
-  std::copy(std::begin(index_), std::end(index_), std::begin(base_));
-  std::array<mpz_class, 6> alpha;
-  for (int i = 0; i < 6; ++i) {
-    if (index_[i] == kUnit) continue;
-    alpha[i] = basis_.determinant();
-    if (direction_ < 0 || basis_.x(i) < basis_.x(direction_)) direction_ = i;
+// Six generators: v is interior if all its weights are positive. Where the least is negative, and
+// where one is zero and none negative, minus the row of that weight has y.v > 0 and y.v = 0, and is
+// at most 0 on the basis; where it is so on all generators it separates and supports.
+bool ExactDecider::DecidesBasis(exact::ConeMembership* result) {
+  int least = 0;
+  for (int i = 1; i < 6; ++i) {
+    if (n_.x[i] < n_.x[least]) least = i;
   }
-  if (direction_ < 0) return;
-  basis_.Pivot(direction_, alpha);
-  index_[direction_] = kDirection;
-}
-
-// A generator with y.a > 0 for y = minus the row of tau, the best that doubles know or the first.
-int ExactDecider::FindImproving(bool lowest_index) {
-  std::array<mpz_class, 6> y;
-  for (int k = 0; k < 6; ++k) y[k] = -basis_.entry(direction_, k);
-  const SignFilter filter(cone_, y);
-  const int best = Price(cone_, filter.y, &price_);
-  if (!lowest_index && best >= 0 && price_[best] > filter.error) return best;
-  for (int j = 0; j < cone_.size(); ++j) {
-    if (price_[j] < -filter.error) continue;
-    if (price_[j] > filter.error || basis_.Product(direction_, Column(j)) < 0) return j;
-  }
-  return -1;
-}
-
-// The row whose weight reaches zero first: min x_i/alpha_i over alpha_i > 0, ties by the
-// generator's index where Bland's rule asks for it.
-int ExactDecider::ChooseLeaving(const std::array<mpz_class, 6>& alpha, bool lowest_index) const {
-  int row = -1;
-  for (int i = 0; i < 6; ++i) {
-    if (index_[i] < 0 || alpha[i] <= 0) continue;
-    if (row < 0) {
-      row = i;
-      continue;
-    }
-    const int order = cmp(mpz_class(basis_.x(i) * alpha[row]), mpz_class(basis_.x(row) * alpha[i]));
-    const bool tie = lowest_index ? index_[i] < index_[row] : alpha[i] > alpha[row];
-    if (order < 0 || (order == 0 && tie)) row = i;
-  }
-  return row;
-}
-
-// Dantzig's rule, and Bland's [1977], which ends, once many pivots have brought nothing.
-void ExactDecider::Maximise(exact::ConeMembership* result) {
-  constexpr int kPatience = 20;
-  int idle = 0;
-  while (true) {
-    if (basis_.x(direction_) > 0 || (deficient_ && basis_.x(direction_) == 0)) {
-      ReportWeights(0, -1, result);
-      return;
-    }
-    const bool bland = idle > kPatience;
-    const int entering = FindImproving(bland);
-    if (entering < 0) {
-      ReportWeights(0, -1, result);
-      return;
-    }
-    const std::array<mpz_class, 6> alpha = basis_.Transform(Column(entering));
-    const int row = ChooseLeaving(alpha, bland);
-    if (row < 0) {  // tau grows without bound: go where tau is 1
-      const mpz_class rate = -alpha[direction_];
-      mpz_class needed = basis_.determinant() - basis_.x(direction_);
-      ReportWeights(needed / rate + 1, entering, result);
-      return;
-    }
-    idle = basis_.x(row) == 0 ? idle + 1 : 0;
-    basis_.Pivot(row, alpha);
-    index_[row] = entering;
-  }
-}
-
-// All weights in use: tau on the base, the basic ones, `ray_weight` on the generator `ray`, which
-// reduces the basic ones. Weights of integer columns become those of generators by powers of two.
-void ExactDecider::ReportWeights(const mpz_class& ray_weight, int ray,
-                                 exact::ConeMembership* result) const {
-  std::array<mpz_class, 6> x;
-  for (int i = 0; i < 6; ++i) x[i] = basis_.x(i);
-  std::vector<mpz_class> total(cone_.size());
-  if (ray >= 0) {
-    const std::array<mpz_class, 6> alpha = basis_.Transform(*columns_[ray]);
-    for (int i = 0; i < 6; ++i) x[i] -= ray_weight * alpha[i];
-    total[ray] += ray_weight * basis_.determinant();
-  }
-  const mpz_class tau = direction_ >= 0 ? x[direction_] : mpz_class(0);
-  if (tau < 0) {
-    result->where = Membership::kOutside;
-    ReportRow(direction_, -1, result);
-    return;
-  }
-  for (int i = 0; i < 6; ++i) {
-    if (index_[i] >= 0) total[index_[i]] += x[i];
-    if (base_[i] >= 0) total[base_[i]] += tau;
-  }
-  for (int j = 0; j < cone_.size(); ++j) {
-    if (total[j] == 0) continue;
-    Rational weight(total[j], basis_.determinant());
-    weight.canonicalize();
-    const long shift = columns_[j]->exponent - v_.exponent;
-    if (shift >= 0) {
-      weight <<= static_cast<unsigned long>(shift);
-    } else {
-      weight >>= static_cast<unsigned long>(-shift);
-    }
-    result->index.push_back(j);
-    result->weight.push_back(weight);
-  }
-  if (tau > 0 && !deficient_) {
+  const int sign = sgn(n_.x[least]);
+  if (sign > 0) {
     result->where = Membership::kInterior;
-    return;
+    ReportWeights(0, -1, 0, result);
+    return true;
   }
-  result->where = Membership::kBoundary;
-  int row = direction_;
-  for (int i = 0; deficient_ && i < 6; ++i) {
-    if (index_[i] == kUnit) row = i;
+  for (int row = least; row < 6; ++row) {
+    if (sign < 0 ? row != least : n_.x[row] != 0) continue;
+    SetToRow(row, true, &n_.y);
+    if (!IsNonPositive(n_.y)) continue;
+    result->where = sign < 0 ? Membership::kOutside : Membership::kBoundary;
+    ReportSeparator(n_.y, result);
+    if (sign == 0) ReportWeights(0, -1, 0, result);
+    return true;
   }
-  ReportRow(row, -1, result);
+  return false;
 }
 
-exact::ConeMembership ExactDecider::Run(const ConeProposal& proposal) {
+exact::ConeMembership ExactDecider::Run() {
   exact::ConeMembership result;
   for (int row = 0; row < 6; ++row) {
-    if (proposal.basis[row] >= 0) TakeIn(proposal.basis[row], row);
+    if (proposal_.basis[row] >= 0) TakeIn(proposal_.basis[row], row, nullptr);
   }
-  if (!proposal.feasible && SeparatesByUnits(&result)) return result;
+  n_.basis.Transform(n_.demand, &n_.x);
+  if (!proposal_.feasible && SeparatesByUnits(&result)) return result;
   if (Complete(&result)) return result;
+  if (!deficient_ && DecidesBasis(&result)) return result;
   StartTau();
   if (direction_ < 0) {  // no generator but zeros, and v = 0
-    ReportWeights(0, -1, &result);
-    return result;
+    Conclude(&result);
+  } else {
+    Maximise(&result);
   }
-  Maximise(&result);
   return result;
 }
 
-/** The weights of v on six generators, by integer elimination. */
-exact::ConeMembership ExactWeights(const WrenchCone& cone, const WrenchDemand& v,
-                                   const ConeAnswer& answer) {
-  const IntegerWrench demand = IntegerDemand(v);
-  IntegerBasis basis(demand);
-  exact::ConeMembership proof;
-  proof.where = Membership::kInterior;
-  int row_of[6];
-  IntegerWrench columns[6];
-  bool taken[6] = {};
-  for (int k = 0; k < 6; ++k) {
-    columns[k] = IntegerColumn(cone, answer.basis[k]);
-    const auto alpha = basis.Transform(columns[k]);
-    int row = 0;
-    while (row < 6 && (taken[row] || alpha[row] == 0)) ++row;
-    if (row == 6) throw Error(Error::Code::kInternal, "a proven basis is singular");
-    basis.Pivot(row, alpha);
-    taken[row] = true;
-    row_of[k] = row;
-  }
-  for (int k = 0; k < 6; ++k) {
-    Rational weight(basis.x(row_of[k]), basis.determinant());
-    weight.canonicalize();
-    const long shift = columns[k].exponent - demand.exponent;
-    weight = shift >= 0 ? Rational(weight << static_cast<unsigned long>(shift))
-                        : Rational(weight >> static_cast<unsigned long>(-shift));
-    proof.index.push_back(answer.basis[k]);
-    proof.weight.push_back(weight);
-  }
-  return proof;
-}
-
-}  // namespace
+ConeWorkspace::Scratch::Scratch() = default;
+ConeWorkspace::Scratch::~Scratch() = default;
 
 exact::ConeMembership DecideExactly(const WrenchCone& cone, const WrenchDemand& v,
-                                    const ConeProposal& proposal) {
-  return ExactDecider(cone, v).Run(proposal);
-}
-
-exact::ConeMembership ExactProof(const WrenchCone& cone, const WrenchDemand& v,
-                                 const ConeAnswer& answer) {
-  if (answer.proof) return *answer.proof;
-  if (answer.where == Membership::kInterior) return ExactWeights(cone, v, answer);
-  exact::ConeMembership proof;
-  proof.where = answer.where;
-  proof.y.resize(6);
-  for (int k = 0; k < 6; ++k) proof.y[k] = Lift(answer.y[k]);
-  return proof;
+                                    ConeWorkspace::Scratch* scratch) {
+  if (scratch->integers == nullptr) scratch->integers = std::make_unique<ConeWorkspace::Integers>();
+  return ExactDecider(cone, v, scratch).Run();
 }
 
 }  // namespace cguide::numeric

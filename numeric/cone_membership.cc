@@ -17,9 +17,10 @@ using exact::Membership;
 void ReportBasis(const WrenchCone& cone, const WrenchDemand& v, const int (&basis)[6],
                  const double (&x)[8], ConeAnswer* answer) {
   answer->where = Membership::kInterior;
+  const double unscale = std::ldexp(1.0, v.scale_exponent());
   for (int k = 0; k < 6; ++k) {
     answer->basis[k] = basis[k];
-    answer->weight[k] = std::ldexp(x[k], v.scale_exponent() - cone.scale_exponent(basis[k]));
+    answer->weight[k] = x[k] * cone.scale(basis[k]) * unscale;
   }
 }
 
@@ -47,17 +48,11 @@ std::optional<ConeAnswer> TryConeMembership(const WrenchCone& cone, const Wrench
   ConeAnswer answer;
   answer.pivots = p.pivots;
   if (p.feasible) {
-    if (!p.full_rank) return std::nullopt;
-    const double kappa = BoundKappa(cone, p.basis, p.inverse);
-    if (!ProvePositive(cone, p.basis, p.inverse, kappa, v, p.x)) return std::nullopt;
+    if (!p.full_rank || !ProveInterior(cone, v, &p)) return std::nullopt;
     ReportBasis(cone, v, p.basis, p.x, &answer);
     return answer;
   }
-  answer.y = p.y;
-  if (!ProvePositiveProduct(answer.y, v) || !LeanAway(cone, scratch, &answer.y) ||
-      !ProvePositiveProduct(answer.y, v)) {
-    return std::nullopt;
-  }
+  if (!ProveOutside(cone, v, scratch, &answer.y)) return std::nullopt;
   answer.where = Membership::kOutside;
   return answer;
 }
@@ -68,7 +63,7 @@ ConeAnswer ConeMembership(const WrenchCone& cone, const WrenchDemand& v, ConeWor
   ConeAnswer answer;
   answer.stage = ConeStage::kExact;
   answer.pivots = workspace->scratch->proposal.pivots;
-  answer.proof = DecideExactly(cone, v, workspace->scratch->proposal);
+  answer.proof = DecideExactly(cone, v, workspace->scratch.get());
   answer.where = answer.proof->where;
   return answer;
 }

@@ -37,22 +37,24 @@ class ConeWorkspace {
   ConeWorkspace(ConeWorkspace&&) noexcept;
   ConeWorkspace& operator=(ConeWorkspace&&) noexcept;
 
-  struct Scratch;  // numeric/cone_simplex_internal.h
+  struct Scratch;   // numeric/cone_simplex_internal.h
+  struct Integers;  // numeric/cone_exact_internal.h
   std::unique_ptr<Scratch> scratch;
 };
 
 /** Decides in doubles with a proven bound whether v is in the interior of the cone or outside the
  closed cone, or declines: a dense phase-1 simplex proposes a basis or a separating vector, and the
- tests in cone_certificates.cc decide. Declined: ties, whatever rounding cannot tell from one, cones
- of rank below 6 that hold v, cones with a line that do not, numbers that are not finite or beyond
- 2^+-900.
+ tests in cone_certificates.cc and cone_separation.cc decide. Declined: ties, whatever rounding
+ cannot tell from one, cones of rank below 6 that hold v, cones with a line that do not, numbers
+ that are not finite or beyond 2^+-900.
  @throws Error where the thread does not round to nearest. */
 std::optional<ConeAnswer> TryConeMembership(const WrenchCone& cone, const WrenchDemand& v,
                                             ConeWorkspace* workspace);
 
-/** TryConeMembership, else the exact stage: an integer simplex that starts from the float basis and
- keeps one common denominator [Edmonds 1967; Bareiss 1968; Avis, Fukuda 1992], which decides every
- case, boundary included, with a proof that exact::CheckConeMembership accepts.
+/** TryConeMembership, else the exact stage: an integer simplex that keeps one common denominator
+ [Edmonds 1967; Bareiss 1968; Avis, Fukuda 1992] and starts from the float basis, often its last one
+ too. It decides every case, boundary included, with a proof that exact::CheckConeMembership
+ accepts.
  @throws Error where a number is not finite. */
 ConeAnswer ConeMembership(const WrenchCone& cone, const WrenchDemand& v, ConeWorkspace* workspace);
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "cguide/numeric/cone_simplex_internal.h"
@@ -18,118 +19,156 @@ constexpr double kPriceTolerance = 1e-11;  // of |y|_1: no column improves by mo
 constexpr double kPivotTolerance = 1e-9;   // smallest divisor in the ratio test
 constexpr double kZero = 1e-13;            // of |v|: a weight that counts as none
 constexpr double kAllowance = 1e-13;       // of weights, in the ratio test
+constexpr double kLowest = -0x1p1000;      // below every ratio
 constexpr int kMaxPivots = 100;
 
-constexpr double kUnitLane[6][8] = {{1},          {0, 1},          {0, 0, 1},
-                                    {0, 0, 0, 1}, {0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 1}};
-constexpr double kLaneNumbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+/** The scaled columns by rows. */
+struct Columns {
+  const double* row[6];
+  std::size_t n;
+  std::uint64_t mask;  ///< n - 1 rounded up to ones
 
-/** The column with the largest price; n > 0. */
-template <typename V>
-CGUIDE_INLINE Champion Dearest(const double* rows, std::size_t stride, std::size_t n,
-                               const double (&y)[6]) {
-  V best = ColumnProducts<V>(rows, stride, 0, y), index = Load<V>(kLaneNumbers), best_index = index;
-  for (std::size_t j = 8; j < n; j += 8) {
-    const V v = ColumnProducts<V>(rows, stride, j, y);
-    index = index + 8.0;
-    best_index = IfGreater(v, best, index, best_index);
-    best = IfGreater(v, best, v, best);
+  explicit Columns(const WrenchCone& cone)
+      : n(static_cast<std::size_t>(cone.padded_size())), mask(std::bit_ceil(n) - 1) {
+    for (int i = 0; i < 6; ++i) row[i] = cone.row(i);
   }
-  double at[8];
-  Store(best_index, at);
-  const Champion champion = Largest(best);
-  return {champion.value, static_cast<int>(at[champion.lane])};
+};
+
+/** The largest price, its column's number in the last bits. */
+template <typename V>
+CGUIDE_INLINE double Dearest(const Columns& a, const double (&y)[6]) {
+  Labels<V> numbers = LaneNumbers<V>();
+  V best = Labelled(ColumnProducts<V>(a.row, 0, y), numbers, a.mask);
+  for (std::size_t j = 8; j < a.n; j += 8) {
+    numbers = numbers + 8;
+    best = Larger(Labelled(ColumnProducts<V>(a.row, j, y), numbers, a.mask), best);
+  }
+  return Largest(best);
 }
 
 // Lanes are rows of the basis.
 template <typename V>
-CGUIDE_INLINE V Transform(const double* rows, std::size_t stride, int j, const V (&R)[6]) {
-  const double* a = rows + j;
-  return ((R[0] * a[0] + R[1] * a[stride]) + (R[2] * a[2 * stride] + R[3] * a[3 * stride])) +
-         (R[4] * a[4 * stride] + R[5] * a[5 * stride]);
+CGUIDE_INLINE V Transform(const Columns& a, std::size_t j, const Matrix6& R) {
+  V term[6];
+  for (int k = 0; k < 6; ++k) term[k] = Load<V>(R.c[k]) * a.row[k][j];
+  return ((term[0] + term[1]) + (term[2] + term[3])) + (term[4] + term[5]);
 }
 
 // The row that reaches zero first, by Harris' ratio test [1973]: weights a little larger than they
 // are make the larger divisor win among (nearly) equal ones, and the smaller allowance an
-// artificial column.
+// artificial column. -1 without one.
 template <typename V>
-CGUIDE_INLINE int ChooseLeaving(const V& x, const V& alpha, const V& inverse, const V& artificial) {
-  const V ratios = -((x + (Lanes<V>(kAllowance) - 0.5 * kAllowance * artificial)) * inverse);
-  const Champion champion =
-      Largest(IfGreater(alpha, Lanes<V>(kPivotTolerance), ratios, Lanes<V>(-INFINITY)));
-  return champion.value > -INFINITY ? champion.lane : -1;
+CGUIDE_INLINE int ChooseLeaving(const V& x, const V& alpha, const V& artificial) {
+  constexpr std::uint64_t kMask = 7;
+  const V raised = x + (Lanes<V>(kAllowance) - 0.5 * kAllowance * artificial);
+  const V ratios =
+      IfGreater(alpha, Lanes<V>(kPivotTolerance), -(raised / alpha), Lanes<V>(kLowest));
+  const double first = Largest(Labelled(ratios, LaneNumbers<V>(), kMask));
+  return first > 0.5 * kLowest ? static_cast<int>(LabelOf(first, kMask)) : -1;
 }
 
-// With alpha - e_row in place of alpha one formula serves all rows: R_row - (alpha_row - 1)
-// R_row/alpha_row = R_row/alpha_row. The multipliers move by -price times the new row [Dantzig
-// 1963, revised method].
+/** Weights, which rows have artificial columns left (1, else 0), and the inverse of the basis. */
 template <typename V>
-CGUIDE_INLINE void Pivot(int row, double inverse, const V& moved, double price, V (&R)[6],
-                         double (&y)[6]) {
-  double entries[6];
-  for (int k = 0; k < 6; ++k) entries[k] = reinterpret_cast<const double*>(&R[k])[row];
-  for (int k = 0; k < 6; ++k) {
-    const double factor = entries[k] * inverse;
-    R[k] -= moved * factor;
-    y[k] -= price * factor;
-  }
-}
+struct Tableau {
+  V x, artificial;
+  Matrix6* R;
+};
 
+/** From the artificial basis: the unit vectors with the signs of v. */
 template <typename V>
-CGUIDE_INLINE void PhaseOneKernel(const double* __restrict rows, std::size_t stride, std::size_t n,
-                                  ConeProposal* __restrict proposal) {
-  ConeProposal& p = *proposal;
+CGUIDE_INLINE Tableau<V> StartFromArtificials(const double* demand, ConeProposal* p,
+                                              double (&y)[6]) {
   constexpr double kAllRows[8] = {1, 1, 1, 1, 1, 1, 0, 0};
-  V R[6], artificial = Load<V>(kAllRows), x = Load<V>(p.x);
-  double y[6];
+  const V v = LoadSix<V>(demand), one = Lanes<V>(1), sign = IfGreater(V{}, v, -one, one);
+  double signs[8];
+  Store(sign, signs);
   for (int k = 0; k < 6; ++k) {
-    R[k] = Load<V>(p.inverse.c[k]);
-    y[k] = p.inverse.c[k][k];
+    y[k] = signs[k];
+    Store(sign * Load<V>(kUnitLane[k]), p->inverse.c[k]);
+    p->basis[k] = -1;
   }
+  return {Absolute(v), Load<V>(kAllRows), &p->inverse};
+}
+
+/** What a pivot may need of any row, before it is known which. */
+struct alignas(64) PivotRows {
+  double divisor[8], theta[8], price[8];
+};
+
+template <typename V>
+CGUIDE_INLINE void Prepare(const Tableau<V>& t, const V& alpha, PivotRows* of) {
+  const V divisor = Lanes<V>(1) / alpha;
+  Store(divisor, of->divisor);
+  Store(t.x * divisor, of->theta);
+  Store(Sum(t.artificial * alpha) * divisor, of->price);
+}
+
+// With moved = alpha - e_row in place of alpha one formula serves all rows: R_row - (alpha_row - 1)
+// R_row/alpha_row = R_row/alpha_row [Dantzig 1963, revised method].
+template <typename V>
+CGUIDE_INLINE void Pivot(int row, const PivotRows& of, const V& alpha, const double (&entries)[6],
+                         Tableau<V>* t) {
+  const V unit = Load<V>(kUnitLane[row]), moved = alpha - unit;
+  t->x = Larger(t->x - moved * of.theta[row], V{});
+  t->artificial -= t->artificial * unit;
+  for (int k = 0; k < 6; ++k) {
+    double* column = t->R->c[k];
+    Store(Load<V>(column) - moved * (entries[k] * of.divisor[row]), column);
+  }
+}
+
+CGUIDE_INLINE double SizeOf(const double (&y)[6]) {
+  return ((std::abs(y[0]) + std::abs(y[1])) + (std::abs(y[2]) + std::abs(y[3]))) +
+         (std::abs(y[4]) + std::abs(y[5]));
+}
+
+// The multipliers move by -price times the new row. They go first, and the next prices with them,
+// which all that follows waits for.
+template <typename V>
+CGUIDE_INLINE void PhaseOneKernel(const Columns& a, const double* __restrict demand,
+                                  ConeProposal* __restrict p) {
+  double y[6], entries[6];
+  Tableau<V> t = StartFromArtificials<V>(demand, p, y);
   int pivots = 0;
+  bool feasible = false;
+  double best = a.n == 0 ? 0 : Dearest<V>(a, y);
   for (; pivots < kMaxPivots; ++pivots) {
-    double size = 0;
-    const double infeasibility = Sum(artificial * x);
-    p.feasible = infeasibility <= kZero;
-    if (p.feasible || n == 0) break;
-    const Champion best = Dearest<V>(rows, stride, n, y);
-    for (int k = 0; k < 6; ++k) size += std::abs(y[k]);
-    if (!(best.value > kPriceTolerance * size)) break;
-    const V alpha = Transform(rows, stride, best.lane, R);
-    const V inverse = Lanes<V>(1) / alpha;
-    const int row = ChooseLeaving(x, alpha, inverse, artificial);
+    feasible = Sum(t.artificial * t.x) <= kZero;
+    if (feasible || !(best > kPriceTolerance * SizeOf(y))) break;
+    const auto entering = static_cast<std::size_t>(LabelOf(best, a.mask));
+    const V alpha = Transform<V>(a, entering, p->inverse);
+    const int row = ChooseLeaving(t.x, alpha, t.artificial);
+    PivotRows of;
+    Prepare(t, alpha, &of);
     if (row < 0) break;
-    const double divisor = reinterpret_cast<const double*>(&inverse)[row];
-    const double theta = reinterpret_cast<const double*>(&x)[row] * divisor;
-    const V unit = Load<V>(kUnitLane[row]), moved = alpha - unit;
-    x = Larger(x - moved * theta, V{});
-    artificial -= artificial * unit;
-    Pivot(row, divisor, moved, best.value, R, y);
-    p.basis[row] = best.lane;
+    for (int k = 0; k < 6; ++k) {
+      entries[k] = p->inverse.c[k][row];
+      y[k] -= entries[k] * of.price[row];
+    }
+    best = Dearest<V>(a, y);
+    Pivot(row, of, alpha, entries, &t);
+    p->basis[row] = static_cast<int>(entering);
   }
+  p->feasible = feasible;
+  p->pivots = pivots;
+  Store(t.x, p->x);
+  Store(t.artificial, p->artificial);
+  if (feasible) return;
   // The multipliers anew: the sum of the artificial rows.
-  for (int k = 0; k < 6; ++k) {
-    p.y[k] = Sum(artificial * R[k]);
-    Store(R[k], p.inverse.c[k]);
-  }
-  Store(x, p.x);
-  p.pivots = pivots;
+  for (int k = 0; k < 6; ++k) p->y[k] = Sum(t.artificial * Load<V>(p->inverse.c[k]));
 }
 
 template <typename V>
-CGUIDE_INLINE int PriceKernel(const double* rows, std::size_t stride, std::size_t n,
-                              const double (&y)[6], double* price) {
-  for (std::size_t j = 0; j < n; j += 8) Store(ColumnProducts<V>(rows, stride, j, y), price + j);
-  return Dearest<V>(rows, stride, n, y).lane;
+CGUIDE_INLINE int PriceKernel(const Columns& a, const double (&y)[6], double* price) {
+  for (std::size_t j = 0; j < a.n; j += 8) Store(ColumnProducts<V>(a.row, j, y), price + j);
+  return static_cast<int>(LabelOf(Dearest<V>(a, y), a.mask));
 }
 
 CGUIDE_DISPATCH(void, RunPhaseOne, PhaseOneKernel,
-                (const double* rows, std::size_t stride, std::size_t n, ConeProposal* proposal),
-                (rows, stride, n, proposal))
-CGUIDE_DISPATCH(int, PriceAll, PriceKernel,
-                (const double* rows, std::size_t stride, std::size_t n, const double (&y)[6],
-                 double* price),
-                (rows, stride, n, y, price))
+                (const Columns& a, const double* demand, ConeProposal* proposal),
+                (a, demand, proposal))
+CGUIDE_DISPATCH(int, PriceAll, PriceKernel, (const Columns& a, const double (&y)[6], double* price),
+                (a, y, price))
 
 // The rare pivot outside the loop.
 void PivotPlainly(const WrenchCone& cone, int j, int row, Matrix6* R) {
@@ -168,31 +207,19 @@ bool DriveOutArtificials(const WrenchCone& cone, ConeWorkspace::Scratch* scratch
   return full;
 }
 
-void StartFromArtificials(const WrenchDemand& v, ConeProposal* p) {
-  *p = ConeProposal{};
-  for (int i = 0; i < 6; ++i) {
-    const double value = v.scaled()[i];
-    p->inverse.c[i][i] = value < 0 ? -1 : 1;
-    p->x[i] = std::abs(value);
-  }
-}
-
 }  // namespace
 
 int Price(const WrenchCone& cone, const double (&y)[6], std::vector<double>* price) {
-  const auto n = static_cast<std::size_t>(cone.padded_size());
-  price->resize(n);
-  return n == 0 ? -1 : PriceAll(cone.row(0), cone.stride(), n, y, price->data());
+  const Columns a(cone);
+  price->resize(a.n);
+  return a.n == 0 ? -1 : PriceAll(a, y, price->data());
 }
 
 void SolvePhaseOne(const WrenchCone& cone, const WrenchDemand& v, ConeWorkspace::Scratch* scratch) {
   ConeProposal& p = scratch->proposal;
-  StartFromArtificials(v, &p);
-  const auto n = static_cast<std::size_t>(cone.padded_size());
-  RunPhaseOne(cone.row(0), cone.stride(), n, &p);
-  if (!p.feasible) return;
-  p.full_rank = *std::min_element(std::begin(p.basis), std::end(p.basis)) >= 0 ||
-                DriveOutArtificials(cone, scratch);
+  RunPhaseOne(Columns(cone), v.scaled().data(), &p);
+  p.full_rank = p.feasible && (*std::min_element(std::begin(p.basis), std::end(p.basis)) >= 0 ||
+                               DriveOutArtificials(cone, scratch));
 }
 
 }  // namespace cguide::numeric

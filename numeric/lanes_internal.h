@@ -61,7 +61,13 @@ concept Lanes8 = sizeof(V) == 64 && requires {
 template <Lanes8 V>
 CGUIDE_INLINE V Lanes(double x) {
   V v;
-  for (auto& part : v.part) part = typename V::Part{} + x;
+  for (auto& part : v.part) {
+    if constexpr (kParts<V> == 1) {
+      part = typename V::Part{x, x, x, x, x, x, x, x};
+    } else {
+      part = typename V::Part{x, x, x, x};
+    }
+  }
   return v;
 }
 template <Lanes8 V>
@@ -151,39 +157,134 @@ CGUIDE_INLINE void Store(const V& v, double* p) {
   __builtin_memcpy(p, &v, sizeof(V));
 }
 
-/** Of eight values the largest and its lane, by a tournament: three rounds deep. */
-struct Champion {
-  double value;
-  int lane;
-};
-CGUIDE_INLINE Champion Better(const Champion& x, const Champion& y) {
-  const bool second = y.value > x.value;
-  return {second ? y.value : x.value, second ? y.lane : x.lane};
+using Quad = double __attribute__((vector_size(32)));
+using Duo = double __attribute__((vector_size(16)));
+
+/** The two halves of eight lanes, and of four. */
+CGUIDE_INLINE void Halve(const Wide8& v, Quad* low, Quad* high) {
+  *low = __builtin_shufflevector(v.part[0], v.part[0], 0, 1, 2, 3);
+  *high = __builtin_shufflevector(v.part[0], v.part[0], 4, 5, 6, 7);
 }
-template <Lanes8 V>
-CGUIDE_INLINE Champion Largest(const V& v) {
-  double x[8];
-  Store(v, x);
-  const Champion a = Better({x[0], 0}, {x[1], 1}), b = Better({x[2], 2}, {x[3], 3}),
-                 c = Better({x[4], 4}, {x[5], 5}), d = Better({x[6], 6}, {x[7], 7});
-  return Better(Better(a, b), Better(c, d));
+CGUIDE_INLINE void Halve(const Pair8& v, Quad* low, Quad* high) {
+  *low = v.part[0];
+  *high = v.part[1];
+}
+CGUIDE_INLINE void Halve(const Quad& v, Duo* low, Duo* high) {
+  *low = __builtin_shufflevector(v, v, 0, 1);
+  *high = __builtin_shufflevector(v, v, 2, 3);
 }
 
+/** The first numbers of eight pairs, and the second ones. */
+CGUIDE_INLINE void Unzip(const Duo (&pair)[8], Wide8* first, Wide8* second) {
+  Quad half[4];
+  for (int i = 0; i < 4; ++i) {
+    const int l = i / 2 * 4 + i % 2;
+    half[i] = __builtin_shufflevector(pair[l], pair[l + 2], 0, 1, 2, 3);
+  }
+  const Wide8::Part even = __builtin_shufflevector(half[0], half[2], 0, 1, 2, 3, 4, 5, 6, 7),
+                    odd = __builtin_shufflevector(half[1], half[3], 0, 1, 2, 3, 4, 5, 6, 7);
+  first->part[0] = __builtin_shufflevector(even, odd, 0, 8, 2, 10, 4, 12, 6, 14);
+  second->part[0] = __builtin_shufflevector(even, odd, 1, 9, 3, 11, 5, 13, 7, 15);
+}
+CGUIDE_INLINE void Unzip(const Duo (&pair)[8], Pair8* first, Pair8* second) {
+  for (int i = 0; i < 2; ++i) {
+    const Quad even = __builtin_shufflevector(pair[4 * i], pair[4 * i + 2], 0, 1, 2, 3),
+               odd = __builtin_shufflevector(pair[4 * i + 1], pair[4 * i + 3], 0, 1, 2, 3);
+    first->part[i] = __builtin_shufflevector(even, odd, 0, 4, 2, 6);
+    second->part[i] = __builtin_shufflevector(even, odd, 1, 5, 3, 7);
+  }
+}
+
+/** The largest of eight values: three comparisons deep, without branches. */
+template <Lanes8 V>
+CGUIDE_INLINE double Largest(const V& v) {
+  Quad a, b;
+  Halve(v, &a, &b);
+  Duo c, d;
+  Halve(a > b ? a : b, &c, &d);
+  const Duo two = c > d ? c : d;
+  return two[0] > two[1] ? two[0] : two[1];
+}
+
+/** Labels of lanes, kept in the last bits of their values, so that the largest value brings its own
+ along. */
+template <Lanes8 V>
+struct Labels {
+  typename V::Bits part[kParts<V>];
+};
+template <Lanes8 V>
+CGUIDE_INLINE Labels<V> LaneNumbers() {
+  constexpr std::uint64_t kNumbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+  Labels<V> labels;
+  __builtin_memcpy(&labels, kNumbers, sizeof(labels));
+  return labels;
+}
+template <Lanes8 V>
+CGUIDE_INLINE Labels<V> operator+(const Labels<V>& labels, std::uint64_t n) {
+  Labels<V> sum;
+  for (int i = 0; i < kParts<V>; ++i) sum.part[i] = labels.part[i] + n;
+  return sum;
+}
+
+/** v with labels in place of the bits of `mask`, the last ones: finite numbers stay finite and move
+ by at most 2^-52 mask of themselves. */
+template <Lanes8 V>
+CGUIDE_INLINE V Labelled(const V& v, const Labels<V>& labels, std::uint64_t mask) {
+  V z;
+  for (int i = 0; i < kParts<V>; ++i) {
+    z.part[i] = (typename V::Part)(((typename V::Bits)v.part[i] & ~mask) |  // NOLINT: lanes' bits
+                                   labels.part[i]);
+  }
+  return z;
+}
+CGUIDE_INLINE std::uint64_t LabelOf(double x, std::uint64_t mask) {
+  std::uint64_t bits;
+  __builtin_memcpy(&bits, &x, sizeof(bits));
+  return bits & mask;
+}
+
+/** ((x0 + x4) + (x2 + x6)) + ((x1 + x5) + (x3 + x7)) */
 template <Lanes8 V>
 CGUIDE_INLINE double Sum(const V& v) {
-  double x[8];
-  Store(v, x);
-  return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
+  Quad a, b;
+  Halve(v, &a, &b);
+  Duo c, d;
+  Halve(a + b, &c, &d);
+  const Duo two = c + d;
+  return two[0] + two[1];
+}
+
+/** p[0], p[step], ... p[5 step] and two zeros. */
+template <Lanes8 V>
+CGUIDE_INLINE V LoadSix(const double* p, std::size_t step = 1) {
+  const double *q = p + 2 * step, *r = q + 2 * step;
+  V v;
+  if constexpr (kParts<V> == 1) {
+    v.part[0] = typename V::Part{p[0], p[step], q[0], q[step], r[0], r[step], 0, 0};
+  } else {
+    v.part[0] = typename V::Part{p[0], p[step], q[0], q[step]};
+    v.part[1] = typename V::Part{r[0], r[step], 0, 0};
+  }
+  return v;
 }
 
 /** y . (columns j .. j + 7) of six rows: ((y0 a0 + y1 a1) + (y2 a2 + y3 a3)) + (y4 a4 + y5 a5). */
 template <Lanes8 V>
+CGUIDE_INLINE V ColumnProducts(const double* const (&row)[6], std::size_t j, const double (&y)[6]) {
+  return ((y[0] * Load<V>(row[0] + j) + y[1] * Load<V>(row[1] + j)) +
+          (y[2] * Load<V>(row[2] + j) + y[3] * Load<V>(row[3] + j))) +
+         (y[4] * Load<V>(row[4] + j) + y[5] * Load<V>(row[5] + j));
+}
+template <Lanes8 V>
 CGUIDE_INLINE V ColumnProducts(const double* rows, std::size_t stride, std::size_t j,
                                const double (&y)[6]) {
-  const double* a = rows + j;
-  return ((y[0] * Load<V>(a) + y[1] * Load<V>(a + stride)) +
-          (y[2] * Load<V>(a + 2 * stride) + y[3] * Load<V>(a + 3 * stride))) +
-         (y[4] * Load<V>(a + 4 * stride) + y[5] * Load<V>(a + 5 * stride));
+  const double* const row[6] = {rows,
+                                rows + stride,
+                                rows + 2 * stride,
+                                rows + 3 * stride,
+                                rows + 4 * stride,
+                                rows + 5 * stride};
+  return ColumnProducts<V>(row, j, y);
 }
 
 }  // namespace cguide::numeric

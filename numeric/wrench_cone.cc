@@ -85,26 +85,17 @@ CGUIDE_INLINE void ScaleBlock(const Block<V>& block, double* e, std::size_t stri
 template <typename V>
 CGUIDE_INLINE bool AllOrdinary(const Pass<V>& pass) {
   const double sum = Sum(pass.sum);
-  return sum == sum && Largest(pass.largest).value <= 0x1p900 &&
-         -Largest(-pass.smallest).value >= 0x1p-900;
-}
-
-/** Numbers first[0], first[step], ... first[7 step] as lanes. */
-template <typename V>
-CGUIDE_INLINE V Gather(const double* first, std::size_t step) {
-  V v;
-  constexpr int kLanes = 8 / kParts<V>;
-  for (int i = 0; i < kParts<V>; ++i) {
-    for (int l = 0; l < kLanes; ++l)
-      v.part[i][l] = first[static_cast<std::size_t>(i * kLanes + l) * step];
-  }
-  return v;
+  return sum == sum && Largest(pass.largest) <= 0x1p900 && -Largest(-pass.smallest) >= 0x1p-900;
 }
 
 /** Six consecutive doubles each of eight columns. */
 template <typename V>
 CGUIDE_INLINE void GatherColumns(const double* data, V (&row)[6]) {
-  for (std::size_t i = 0; i < 6; ++i) row[i] = Gather<V>(data + i, 6);
+  for (std::size_t i = 0; i < 6; i += 2) {
+    Duo pair[8];
+    for (std::size_t l = 0; l < 8; ++l) __builtin_memcpy(&pair[l], data + 6 * l + i, sizeof(Duo));
+    Unzip(pair, &row[i], &row[i + 1]);
+  }
 }
 
 static_assert(sizeof(AppliedForce) == 6 * sizeof(double), "p and u lie side by side");
@@ -152,7 +143,7 @@ CGUIDE_INLINE bool ForcesKernel(const double* __restrict forces, std::size_t siz
     const Tail tail(forces + 6 * whole, size - whole);
     FillBlockFromForces(tail.data, e + whole, stride, &pass);
   }
-  *reach = Largest(pass.far).value;
+  *reach = Largest(pass.far);
   return AllOrdinary(pass);
 }
 
@@ -206,11 +197,12 @@ void WrenchCone::Resize(int size) {
 
 void WrenchCone::AssignForces(std::span<const AppliedForce> forces) {
   Resize(static_cast<int>(forces.size()));
-  forces_.assign(forces.begin(), forces.end());
+  const auto* data = reinterpret_cast<const double*>(forces.data());
+  forces_.resize(forces.size());
+  std::copy_n(data, 6 * forces.size(), reinterpret_cast<double*>(forces_.data()));
   wrenches_.clear();
   double reach = 0;
-  const bool ordinary = FillFromForces(reinterpret_cast<const double*>(forces.data()),
-                                       forces.size(), entries_.data(), stride_, &reach);
+  const bool ordinary = FillFromForces(data, forces.size(), entries_.data(), stride_, &reach);
   moment_error_ = MomentError(reach);
   if (!ordinary) LookAtOddColumns();
 }
@@ -237,10 +229,6 @@ void WrenchCone::LookAtOddColumns() {
     if (!zero && !(a.allFinite() && largest >= 0.5 && largest < 1)) in_range_ = false;
   }
   if (!is_finite_) in_range_ = false;
-}
-
-int WrenchCone::scale_exponent(int j) const {
-  return -std::ilogb(entries_[6 * stride_ + static_cast<std::size_t>(j)]);
 }
 
 VectorXq WrenchCone::Exact(int j) const {

@@ -55,8 +55,8 @@ class WrenchCone {
   /** 1 for columns that are zero, padding included, else 0. */
   const double* zero_mark() const { return row(7); }
   Vector6d column(int j) const;
-  /** The generator is column(j) * 2^scale_exponent(j) up to rounding. */
-  int scale_exponent(int j) const;
+  /** The power of two by which generator j is multiplied in column(j), up to rounding. */
+  double scale(int j) const { return row(6)[j]; }
   /** Bounds on the error of every entry of every scaled column, of the force part and the moment
    part; 0 for wrenches given exactly. */
   double force_error() const { return force_error_; }
