@@ -68,7 +68,8 @@ int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
 
 int RunAudit(const AuditArguments& arguments) {
   if (!arguments.output.empty()) RequireWritable(arguments.output);
-  const Subject subject = ReadSubject(arguments.common, arguments.path, arguments.problem);
+  const Subject subject =
+      ReadSubject(arguments.common, arguments.path, arguments.problem, arguments.reading);
   const numeric::World world(subject.problem.model);
   const verify::AuditSubject about{arguments.path, subject.problem_file,
                                    subject.problem.model_digest, kVersion};
