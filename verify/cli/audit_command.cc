@@ -3,6 +3,7 @@
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/io/guide_io.h"
 #include "cguide/verify/audit_report.h"
+#include "cguide/verify/ci_report.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
 #include "cguide/verify/cli/subject.h"
@@ -32,6 +33,18 @@ void Deliver(const AuditArguments& arguments, const std::string& report) {
   }
 }
 
+bool ForMachines(const AuditArguments& arguments) {
+  return arguments.format == "junit" || arguments.format == "sarif";
+}
+
+template <typename Audit>
+std::string CiReport(const AuditArguments& arguments, const verify::AuditSubject& about,
+                     const Model& model, const Audit& audit) {
+  const verify::AuditChecks checks = verify::ChecksOf(model, audit);
+  return arguments.format == "junit" ? verify::WriteJunit(about, checks)
+                                     : verify::WriteSarif(about, checks);
+}
+
 int AuditSamplesOf(const AuditArguments& arguments, const Subject& subject,
                    const numeric::World& world, const verify::AuditSubject& about) {
   ProgressLine progress(arguments.common);
@@ -44,8 +57,9 @@ int AuditSamplesOf(const AuditArguments& arguments, const Subject& subject,
   };
   const verify::SampledAudit audit = verify::AuditSamples(world, subject.path, options);
   const Model& model = subject.problem.model;
-  Deliver(arguments, arguments.format == "json" ? verify::WriteAuditJson(about, model, audit)
-                                                : verify::WriteAuditText(about, model, audit));
+  Deliver(arguments, ForMachines(arguments)       ? CiReport(arguments, about, model, audit)
+                     : arguments.format == "json" ? verify::WriteAuditJson(about, model, audit)
+                                                  : verify::WriteAuditText(about, model, audit));
   return ExitCodeOf(audit);
 }
 
@@ -59,8 +73,9 @@ int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
   };
   const verify::WholeAudit audit = verify::AuditWhole(world, subject.path, options);
   const Model& model = subject.problem.model;
-  Deliver(arguments, arguments.format == "json" ? verify::WriteWholeJson(about, model, audit)
-                                                : verify::WriteWholeText(about, model, audit));
+  Deliver(arguments, ForMachines(arguments)       ? CiReport(arguments, about, model, audit)
+                     : arguments.format == "json" ? verify::WriteWholeJson(about, model, audit)
+                                                  : verify::WriteWholeText(about, model, audit));
   return ExitCodeOf(audit);
 }
 

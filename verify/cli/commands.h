@@ -50,7 +50,7 @@ struct AuditArguments {
   PathArguments reading;
   std::string problem;          ///< overrides the one the guide names
   double dense_step = 0;        ///< 0: none given
-  std::string format = "text";  ///< text, json
+  std::string format = "text";  ///< text, json, junit, sarif
   std::string output;           ///< file, or empty for stdout
 };
 

@@ -69,7 +69,7 @@ CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
                 "Sample every edge at this step; default: decide whole edges")
       ->check(CLI::Range(1e-6, 1.0));
   c->add_option("--format", a->format, "Form of the report")
-      ->check(CLI::IsMember({"text", "json"}))
+      ->check(CLI::IsMember({"text", "json", "junit", "sarif"}))
       ->capture_default_str();
   c->add_option("-o,--output", a->output, "Report file; default: stdout");
   AddCommon(c, &a->common);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <random>
 
 #include "cguide/numeric/io/foreign_path.h"
