@@ -9,7 +9,7 @@ namespace cguide::verify {
 namespace {
 
 using numeric::Obstruction;
-using Outcome = Check::Outcome;
+using Outcome = AuditCheck::Outcome;
 
 Obligation LastObligation(const Model& model) {
   return model.require == GuideRequirement::kContact ? Obligation::kContact : Obligation::kBalance;
@@ -22,12 +22,12 @@ std::vector<std::string> NamesOf(const Model& model, const numeric::Pair& pair) 
 }
 
 // Limits were looked at before the edges, at all waypoints, also where the audit was interrupted.
-Check LimitsOf(const WholeAudit& audit, int edge) {
-  Check check{edge, Obligation::kLimits, Outcome::kHolds, {}};
+AuditCheck LimitsOf(const WholeAudit& audit, int edge) {
+  AuditCheck check{edge, Obligation::kLimits, Outcome::kHolds, {}};
   for (const int end : {0, 1}) {
     const auto& beyond = audit.beyond_limits;
     if (std::find(beyond.begin(), beyond.end(), edge + end) == beyond.end()) continue;
-    Witness witness;
+    AuditWitness witness;
     witness.s = end;
     witness.what = "a joint is beyond its limits at waypoint " + std::to_string(edge + end);
     check.outcome = Outcome::kFails;
@@ -36,14 +36,14 @@ Check LimitsOf(const WholeAudit& audit, int edge) {
   return check;
 }
 
-Check CollisionOf(const Model& model, const EdgeFinding& finding, int edge) {
+AuditCheck CollisionOf(const Model& model, const EdgeFinding& finding, int edge) {
   const EdgeCollision& c = finding.collision;
-  Check check{edge, Obligation::kCollision, Outcome::kHolds, {}};
+  AuditCheck check{edge, Obligation::kCollision, Outcome::kHolds, {}};
   if (!finding.done) check.outcome = Outcome::kNotReached;
   if (!finding.done || c.verdict == Verdict::kHolds) return check;
   const bool sure = c.verdict == Verdict::kFails;
   check.outcome = sure ? Outcome::kFails : Outcome::kUndecided;
-  Witness witness;
+  AuditWitness witness;
   witness.verdict = c.verdict;
   witness.s = c.s;
   witness.bodies = NamesOf(model, c.pair);
@@ -53,9 +53,9 @@ Check CollisionOf(const Model& model, const EdgeFinding& finding, int edge) {
   return check;
 }
 
-Check BalanceOf(const Model& model, const EdgeFinding& finding, int edge) {
+AuditCheck BalanceOf(const Model& model, const EdgeFinding& finding, int edge) {
   const EdgeStability& stable = finding.stability;
-  Check check{edge, LastObligation(model), Outcome::kHolds, {}};
+  AuditCheck check{edge, LastObligation(model), Outcome::kHolds, {}};
   if (!finding.done) {
     check.outcome = Outcome::kNotReached;
   } else if (finding.collision.verdict == Verdict::kFails) {
@@ -63,7 +63,7 @@ Check BalanceOf(const Model& model, const EdgeFinding& finding, int edge) {
   } else if (stable.verdict != Verdict::kHolds) {
     const bool sure = stable.verdict == Verdict::kFails;
     check.outcome = sure ? Outcome::kFails : Outcome::kUndecided;
-    Witness witness;
+    AuditWitness witness;
     witness.verdict = stable.verdict;
     witness.s = stable.s;
     witness.what = sure ? std::string(Name(check.obligation)) + " is lost" : stable.reason;
@@ -87,8 +87,8 @@ Obligation ObligationOf(const Violation& violation) {
   return Obligation::kBalance;
 }
 
-Witness WitnessOf(const Model& model, const Violation& v) {
-  Witness witness;
+AuditWitness WitnessOf(const Model& model, const Violation& v) {
+  AuditWitness witness;
   witness.verdict = v.verdict;
   witness.s = v.s_worst;
   witness.s_first = v.s_first;
@@ -142,7 +142,7 @@ AuditChecks ChecksOf(const Model& model, const SampledAudit& audit) {
   }
   for (const Violation& v : audit.violations) {
     for (int i = 0; i < 3; ++i) {
-      Check& check = all.checks[static_cast<std::size_t>(3 * v.edge + i)];
+      AuditCheck& check = all.checks[static_cast<std::size_t>(3 * v.edge + i)];
       if (check.obligation != ObligationOf(v)) continue;
       check.witnesses.push_back(WitnessOf(model, v));
       if (check.outcome != Outcome::kFails) {

@@ -18,7 +18,7 @@ enum class Obligation { kLimits, kCollision, kContact, kBalance };
 const char* Name(Obligation obligation);
 
 /** One thing that keeps an obligation from holding. */
-struct Witness {
+struct AuditWitness {
   Verdict verdict = Verdict::kFails;  ///< or kUndecided
   double s = 0;                       ///< where it was found, or was worst
   std::optional<double> s_first;      ///< samples: the stretch
@@ -29,14 +29,14 @@ struct Witness {
 };
 
 /** What an audit says about one obligation of one edge. */
-struct Check {
+struct AuditCheck {
   /** kSpared: not asked, because the edge collides anyway. kNotReached: the audit was interrupted
    before. kHolds says no more than the audit does: for every s, or at its samples. */
   enum class Outcome { kHolds, kFails, kUndecided, kSpared, kNotReached };
   int edge = 0;
   Obligation obligation = Obligation::kLimits;
   Outcome outcome = Outcome::kHolds;
-  std::vector<Witness> witnesses;  ///< of kFails and kUndecided, in the order of s
+  std::vector<AuditWitness> witnesses;  ///< of kFails and kUndecided, in the order of s
 };
 
 /** An audit as a list of checks: the edges in order, three obligations each. */
@@ -44,7 +44,7 @@ struct AuditChecks {
   std::string edges_tested;  ///< "whole" or "sampled(STEP)"
   double skin = 0;           ///< m
   bool complete = true;      ///< no check is kNotReached
-  std::vector<Check> checks;
+  std::vector<AuditCheck> checks;
 };
 
 AuditChecks ChecksOf(const Model& model, const WholeAudit& audit);

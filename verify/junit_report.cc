@@ -6,7 +6,7 @@ namespace cguide::verify {
 namespace {
 
 using numeric::Short;
-using Outcome = Check::Outcome;
+using Outcome = AuditCheck::Outcome;
 
 // XML 1.0 (section 2.2) forbids, besides control characters, U+FFFE and U+FFFF; a line break in an
 // attribute would be read as a blank (section 3.3.3).
@@ -33,7 +33,7 @@ std::string Attribute(const char* name, const std::string& value) {
   return std::string(" ") + name + "=\"" + EscapeXml(value) + "\"";
 }
 
-std::string Line(const Witness& witness) {
+std::string Line(const AuditWitness& witness) {
   std::string text = witness.verdict == Verdict::kUndecided ? "undecided, " : "";
   text += "s = " + Short(witness.s);
   if (witness.s_first && witness.s_last && *witness.s_first < *witness.s_last) {
@@ -43,14 +43,14 @@ std::string Line(const Witness& witness) {
 }
 
 /** The element that says what became of a check; empty where it holds. */
-std::string Finding(const Check& check) {
+std::string Finding(const AuditCheck& check) {
   const auto element = [&](const char* tag, const std::string& type, const std::string& message) {
     std::string text = std::string("      <") + tag;
     text += Attribute("message", message);
     if (!type.empty()) text += Attribute("type", type);
     if (check.witnesses.empty()) return text + "/>\n";
     text += ">";
-    for (const Witness& witness : check.witnesses) text += EscapeXml(Line(witness) + "\n");
+    for (const AuditWitness& witness : check.witnesses) text += EscapeXml(Line(witness) + "\n");
     return text + "</" + tag + ">\n";
   };
   switch (check.outcome) {
@@ -78,7 +78,7 @@ struct Counts {
 
 Counts Count(const AuditChecks& audit) {
   Counts counts;
-  for (const Check& check : audit.checks) {
+  for (const AuditCheck& check : audit.checks) {
     if (check.outcome == Outcome::kFails) ++counts.failures;
     if (check.outcome == Outcome::kSpared) ++counts.skipped;
     if (check.outcome == Outcome::kUndecided || check.outcome == Outcome::kNotReached) {
@@ -103,7 +103,7 @@ std::string WriteJunit(const AuditSubject& subject, const AuditChecks& audit) {
           Property("problem", subject.problem_file) + Property("model", subject.model_digest) +
           Property("edges_tested", audit.edges_tested) +
           Property("skin", numeric::Millimetres(audit.skin)) + "    </properties>\n";
-  for (const Check& check : audit.checks) {
+  for (const AuditCheck& check : audit.checks) {
     const std::string finding = Finding(check);
     text +=
         "    <testcase" +

@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using report::CleanUtf8;
-using Outcome = Check::Outcome;
+using Outcome = AuditCheck::Outcome;
 
 struct Rule {
   const char* id;
@@ -76,7 +76,7 @@ Json RulesJson() {
   return rules;
 }
 
-Json PropertiesOf(const Check& check, const Witness& witness) {
+Json PropertiesOf(const AuditCheck& check, const AuditWitness& witness) {
   Json json;
   json["obligation"] = Name(check.obligation);
   json["verdict"] = witness.verdict == Verdict::kFails ? "fails" : "undecided";
@@ -92,7 +92,7 @@ Json PropertiesOf(const Check& check, const Witness& witness) {
   return json;
 }
 
-Json ResultOf(const std::string& uri, const Check& check, const Witness& witness) {
+Json ResultOf(const std::string& uri, const AuditCheck& check, const AuditWitness& witness) {
   const bool sure = witness.verdict == Verdict::kFails;
   const int rule = sure ? RuleOf(check.obligation) : kUndecidedRule;
   const std::string edge = "edge " + std::to_string(check.edge);
@@ -115,7 +115,7 @@ Json InvocationOf(const AuditChecks& audit) {
   json["executionSuccessful"] = audit.complete;
   if (audit.complete) return json;
   int left = 0;
-  for (const Check& check : audit.checks) {
+  for (const AuditCheck& check : audit.checks) {
     if (check.outcome == Outcome::kNotReached && check.obligation == Obligation::kCollision) ++left;
   }
   Json notification;
@@ -140,8 +140,8 @@ std::string WriteSarif(const AuditSubject& subject, const AuditChecks& audit) {
   artifact["roles"] = Json::array({"analysisTarget"});
   run["artifacts"] = Json::array({artifact});
   run["results"] = Json::array();
-  for (const Check& check : audit.checks) {
-    for (const Witness& witness : check.witnesses) {
+  for (const AuditCheck& check : audit.checks) {
+    for (const AuditWitness& witness : check.witnesses) {
       run["results"].push_back(ResultOf(uri, check, witness));
     }
   }

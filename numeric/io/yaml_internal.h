@@ -25,7 +25,7 @@ struct YamlNode {
 
 /** How much a document may hold, and what to do about one that holds more. */
 struct YamlLimits {
-  long nodes = 200'000;  ///< aliases expanded
+  long nodes = 200'000;  ///< aliases expanded, anchored nodes twice
   const char* remedy = "put large geometry into mesh files";
 };
 

@@ -52,7 +52,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
     YamlNode copy = target->second;
     nodes_ += CountNodes(copy);
-    CheckSize(mark);
+    CheckSize(mark.line + 1, mark.column + 1);
     copy.line = mark.line + 1;
     copy.column = mark.column + 1;
     Finish(std::move(copy), YAML::NullAnchor);
@@ -83,16 +83,17 @@ class TreeBuilder : public YAML::EventHandler {
     Refuse(mark.line + 1, mark.column + 1, why);
   }
 
-  void CheckSize(const YAML::Mark& mark) const {
+  void CheckSize(int line, int column) const {
     if (nodes_ > limits_.nodes) {
-      Refuse(mark, "the file holds more than " + std::to_string(limits_.nodes) +
-                       " values, aliases counted; " + limits_.remedy);
+      Refuse(line, column,
+             "the file holds more than " + std::to_string(limits_.nodes) +
+                 " values, aliases counted; " + limits_.remedy);
     }
   }
 
   YamlNode MakeNode(YamlNode::Kind kind, const YAML::Mark& mark) {
     ++nodes_;
-    CheckSize(mark);
+    CheckSize(mark.line + 1, mark.column + 1);
     YamlNode node;
     node.kind = kind;
     node.line = mark.line + 1;
@@ -126,7 +127,12 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void Finish(YamlNode node, YAML::anchor_t anchor) {
-    if (anchor != YAML::NullAnchor) anchors_[anchor] = node;
+    if (anchor != YAML::NullAnchor) {
+      // The copy counts, or anchors one inside the other would multiply the memory by their depth.
+      nodes_ += CountNodes(node);
+      CheckSize(node.line, node.column);
+      anchors_[anchor] = node;
+    }
     if (stack_.empty()) {
       root_ = std::move(node);
       return;

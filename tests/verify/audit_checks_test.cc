@@ -7,7 +7,7 @@
 namespace cguide::verify {
 namespace {
 
-using Outcome = Check::Outcome;
+using Outcome = AuditCheck::Outcome;
 
 TEST_CASE("every edge has three checks, and each says what the audit says") {
   const AuditChecks all = ChecksOf(test::HostileModel(), test::EveryOutcome());
@@ -22,7 +22,7 @@ TEST_CASE("every edge has three checks, and each says what the audit says") {
       Outcome::kHolds, Outcome::kNotReached, Outcome::kNotReached};
   for (std::size_t i = 0; i < 15; ++i) {
     CAPTURE(i);
-    const Check& check = all.checks[i];
+    const AuditCheck& check = all.checks[i];
     CHECK(check.outcome == expected[i]);
     CHECK(check.edge == static_cast<int>(i / 3));
     const Obligation obligations[3] = {Obligation::kLimits, Obligation::kCollision,
@@ -77,7 +77,7 @@ TEST_CASE("violations at samples go to their edge and obligation; a refuted one 
     CHECK(all.checks[3].outcome == Outcome::kNotReached);  // the done edges need not come first
     CHECK(all.checks[7].outcome == Outcome::kFails);
     REQUIRE(all.checks[7].witnesses.size() == 2);
-    const Witness& witness = all.checks[7].witnesses[sure_first ? 0 : 1];
+    const AuditWitness& witness = all.checks[7].witnesses[sure_first ? 0 : 1];
     CHECK(witness.depth == 0.01);
     CHECK(witness.s_first == 0.25);
     CHECK(witness.s == 0.5);
