@@ -212,6 +212,7 @@ SampledAudit AuditSamples(const World& world, const Path& path,
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (done[i]) Merge(edges[i], &all);
   }
+  all.done = std::move(done);
   for (std::size_t i = 1; i < path.waypoints.size(); ++i) {
     all.length += Distance(path.waypoints[i - 1], path.waypoints[i]);
   }

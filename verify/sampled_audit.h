@@ -66,7 +66,8 @@ struct SampledAudit {
   Verdict verdict = Verdict::kHolds;  ///< kFails if a sample provably leaves C_guide
   double step = 0;
   int edges = 0;
-  int edges_done = 0;  ///< fewer than `edges` where interrupted
+  int edges_done = 0;      ///< fewer than `edges` where interrupted
+  std::vector<char> done;  ///< per edge; those that are not need not be the last
   long samples = 0;
   double length = 0;      ///< of the path (metric of path.h)
   StageCounts collision;  ///< pairs that needed their own answer count one by one

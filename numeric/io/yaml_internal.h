@@ -23,11 +23,17 @@ struct YamlNode {
   std::vector<YamlNode> items;    ///< of a list, or the values of a map
 };
 
+/** How much a document may hold, and what to do about one that holds more. */
+struct YamlLimits {
+  long nodes = 200'000;  ///< aliases expanded, anchored nodes twice
+  const char* remedy = "put large geometry into mesh files";
+};
+
 /** Parses one document. Repeated keys, keys that are no scalars, more than one document, nesting
- deeper than 32, more than 200 000 nodes after expanding aliases and aliases to an enclosing node
- are refused. `place` is the file's name for messages. @throws Error (kBadInput) with
- place:line:column. */
-YamlNode ParseYaml(const std::string& text, const std::string& place);
+ deeper than 32, more nodes than the limit and aliases to an enclosing node are refused. `place` is
+ the file's name for messages. @throws Error (kBadInput) with place:line:column. */
+YamlNode ParseYaml(const std::string& text, const std::string& place,
+                   const YamlLimits& limits = {});
 
 /** A node together with the file and the key path that lead to it: the cursor all of the problem
  reader works with. Every refusal throws Error (kBadInput) "file:line:column: key.path: why". Cheap

@@ -15,7 +15,6 @@ namespace cguide::numeric::io {
 namespace {
 
 constexpr std::size_t kMaxDepth = 32;
-constexpr long kMaxNodes = 200'000;
 
 long CountNodes(const YamlNode& node) {
   long count = 1;
@@ -28,7 +27,8 @@ long CountNodes(const YamlNode& node) {
 // recurses.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  explicit TreeBuilder(std::string place) : place_(std::move(place)) {}
+  TreeBuilder(std::string place, const YamlLimits& limits)
+      : place_(std::move(place)), limits_(limits) {}
 
   YamlNode TakeRoot() { return std::move(root_); }
 
@@ -52,7 +52,7 @@ class TreeBuilder : public YAML::EventHandler {
     }
     YamlNode copy = target->second;
     nodes_ += CountNodes(copy);
-    CheckSize(mark);
+    CheckSize(mark.line + 1, mark.column + 1);
     copy.line = mark.line + 1;
     copy.column = mark.column + 1;
     Finish(std::move(copy), YAML::NullAnchor);
@@ -83,16 +83,17 @@ class TreeBuilder : public YAML::EventHandler {
     Refuse(mark.line + 1, mark.column + 1, why);
   }
 
-  void CheckSize(const YAML::Mark& mark) const {
-    if (nodes_ > kMaxNodes) {
-      Refuse(mark, "the file holds more than " + std::to_string(kMaxNodes) +
-                       " values, aliases counted; put large geometry into mesh files");
+  void CheckSize(int line, int column) const {
+    if (nodes_ > limits_.nodes) {
+      Refuse(line, column,
+             "the file holds more than " + std::to_string(limits_.nodes) +
+                 " values, aliases counted; " + limits_.remedy);
     }
   }
 
   YamlNode MakeNode(YamlNode::Kind kind, const YAML::Mark& mark) {
     ++nodes_;
-    CheckSize(mark);
+    CheckSize(mark.line + 1, mark.column + 1);
     YamlNode node;
     node.kind = kind;
     node.line = mark.line + 1;
@@ -102,7 +103,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void Open(YamlNode::Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
     if (stack_.size() >= kMaxDepth) {
-      Refuse(mark, "nested deeper than " + std::to_string(kMaxDepth) + " levels; no problem is");
+      Refuse(mark, "nested deeper than " + std::to_string(kMaxDepth) + " levels; no such file is");
     }
     YamlNode node = MakeNode(kind, mark);
     if (ExpectsKey()) RefuseKey(node);
@@ -126,7 +127,12 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void Finish(YamlNode node, YAML::anchor_t anchor) {
-    if (anchor != YAML::NullAnchor) anchors_[anchor] = node;
+    if (anchor != YAML::NullAnchor) {
+      // The copy counts, or anchors one inside the other would multiply the memory by their depth.
+      nodes_ += CountNodes(node);
+      CheckSize(node.line, node.column);
+      anchors_[anchor] = node;
+    }
     if (stack_.empty()) {
       root_ = std::move(node);
       return;
@@ -145,6 +151,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   std::string place_;
+  YamlLimits limits_;
   YamlNode root_;
   std::vector<Frame> stack_;
   std::map<YAML::anchor_t, YamlNode> anchors_;
@@ -153,15 +160,15 @@ class TreeBuilder : public YAML::EventHandler {
 
 }  // namespace
 
-YamlNode ParseYaml(const std::string& text, const std::string& place) {
+YamlNode ParseYaml(const std::string& text, const std::string& place, const YamlLimits& limits) {
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
-    TreeBuilder builder(place);
+    TreeBuilder builder(place, limits);
     if (!parser.HandleNextDocument(builder)) {
       throw Error(Error::Code::kBadInput, place + ": the file holds no value; is it empty?");
     }
-    TreeBuilder second(place);
+    TreeBuilder second(place, limits);
     if (parser.HandleNextDocument(second)) {
       throw Error(Error::Code::kBadInput,
                   place + ": the file holds more than one YAML document (a line ---); keep one");

@@ -62,6 +62,12 @@ section_main_job() {
   says_not proved
   expect 0 audit "$work/guide.json" --dense 0.005 --format json -o "$work/report.json"
   grep -q '"schema": "cguide-audit/1"' "$work/report.json" || fail "the report has no schema"
+  # For machines: the counts of the report are the answers of the exit code.
+  expect 0 audit "$work/guide.json" --dense 0.005 --format junit
+  says 'failures="0" errors="0"'
+  says 'edges_tested" value="sampled(0.005)"'
+  expect 0 audit "$work/guide.json" --dense 0.005 --format sarif -o "$work/report.sarif"
+  grep -q '"results": \[\]' "$work/report.sarif" || fail "the SARIF report of a clean guide has results"
   # Whole edges, no samples: what holds there holds between samples too.
   local code=0
   "$program" audit "$work/guide.json" >"$work/whole.txt" 2>"$work/err" || code=$?
@@ -133,6 +139,46 @@ section_limits() {
   ls "$work" | grep -q '\.tmp\|~' && fail "temporary files are left"
 }
 
+# One path as CSV, OMPL's matrix and MoveIt's messages: one report, but for the file's name.
+same_path_in_other_forms() {
+  node -e '
+    const fs = require("fs"), [, guideFile, out] = process.argv;
+    const guide = JSON.parse(fs.readFileSync(guideFile, "utf8"));
+    const root = w => ["x", "y", "z", "qx", "qy", "qz", "qw"].map(k => w.root[k]);
+    const rows = guide.waypoints.map(w => root(w).concat(w.joints));
+    fs.writeFileSync(out + "/path.txt", rows.map(r => r.join(" ") + " \n").join("") + "\n");
+    const reversed = guide.waypoints.map(w => root(w).concat([...w.joints].reverse()));
+    fs.writeFileSync(out + "/reversed.txt", reversed.map(r => r.join(" ") + " \n").join("") + "\n");
+    fs.writeFileSync(out + "/order", [...guide.joint_names].reverse().join(","));
+    const robot = {
+      joint_trajectory: {joint_names: guide.joint_names, points: guide.waypoints.map(w => ({positions: w.joints}))},
+      multi_dof_joint_trajectory: {joint_names: ["world_joint"], points: guide.waypoints.map(w => ({transforms: [{
+        translation: {x: w.root.x, y: w.root.y, z: w.root.z},
+        rotation: {x: w.root.qx, y: w.root.qy, z: w.root.qz, w: w.root.qw}}]}))}};
+    fs.writeFileSync(out + "/trajectory.json", JSON.stringify(robot, null, 1));
+    const parts = ["trans_x", "trans_y", "trans_z", "rot_x", "rot_y", "rot_z", "rot_w"].map(p => "floating/" + p);
+    fs.writeFileSync(out + "/trajectory.yaml", "joint_names: [" + parts.concat(guide.joint_names).join(", ") +
+      "]\npoints:\n" + rows.map(r => "  - positions: [" + r.join(", ") + "]\n").join("") + "---\n");
+  ' "$work/guide.json" "$work"
+  local file
+  report() { "$program" audit "$@" --problem "$room" --format json 2>"$work/err" | grep -v '"path"'; }
+  report "$work/path.csv" >"$work/report.csv"
+  grep -q '"holds"' "$work/report.csv" || fail "the CSV path has no report"
+  for file in path.txt trajectory.json trajectory.yaml; do
+    report "$work/$file" >"$work/report"
+    cmp -s "$work/report.csv" "$work/report" || fail "$file gives another report than the CSV path"
+  done
+  grep -q "time stamps" "$work/err" || fail "nothing was said of the time stamps"
+  report "$work/reversed.txt" --path-format ompl --joint-order "$(cat "$work/order")" >"$work/report"
+  cmp -s "$work/report.csv" "$work/report" || fail "the order of the joints was not followed"
+  expect 3 audit "$work/path.txt" --problem "$room" --path-format moveit
+  expect 3 audit "$work/path.csv" --problem "$room" --joint-order a
+  says "--joint-order"
+  expect 3 audit "$work/path.txt" --problem "$room" --root 0,0,1
+  says "3 numbers"
+  expect 2 audit "$work/path.txt" --problem "$room" --path-format magic
+}
+
 section_foreign_path() {
   expect 0 plan "$room" -o "$work/guide.json"
   # The waypoints of a guide, as another program would list them.
@@ -145,12 +191,17 @@ section_foreign_path() {
   expect 0 audit "$work/path.csv" --problem "$room" --dense 0.005
   expect 3 audit "$work/path.csv" --dense 0.005
   says "--problem"
+  same_path_in_other_forms
   # The same path half a metre up: no contact and no balance at any sample.
   awk -F, -v OFS=, 'NR > 1 { $3 += 0.5 } { print }' "$work/path.csv" >"$work/up.csv"
   expect 1 audit "$work/up.csv" --problem "$room" --dense 0.005
   says "balance lost"
   expect 1 audit "$work/up.csv" --problem "$room"
   says "balance is lost"
+  expect 1 audit "$work/up.csv" --problem "$room" --format junit
+  says 'balance is lost" type="balance">'
+  expect 1 audit "$work/up.csv" --problem "$room" --format sarif
+  says '"ruleId": "CG004"'
   # And 3 cm down: the feet are in the floor.
   awk -F, -v OFS=, 'NR > 1 { $3 -= 0.03 } { print }' "$work/path.csv" >"$work/down.csv"
   expect 1 audit "$work/down.csv" --problem "$room" --dense 0.005
@@ -180,7 +231,7 @@ section_bad_input() {
     says "$(basename "$file")"
     count=$((count + 1))
   done
-  for file in "$fixtures"/bad/paths/*.csv; do
+  for file in "$fixtures"/bad/paths/*.csv "$fixtures"/bad/matrices/*.txt "$fixtures"/bad/trajectories/*.yaml; do
     [ -f "$file" ] || continue
     expect 3 audit "$file" --problem "$a1" --dense 0.1
     says "$(basename "$file")"

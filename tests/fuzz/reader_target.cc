@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/numeric/io/foreign_path.h"
 #include "cguide/numeric/io/guide_io.h"
 #include "cguide/numeric/io/mesh_reader.h"
 #include "cguide/numeric/io/problem_reader.h"
@@ -39,6 +40,13 @@ const cguide::Robot& SmallRobot() {
     cguide::Robot made;
     made.name = "small";
     made.links.push_back({.name = "base", .mass = 1});
+    made.links.push_back({.name = "arm", .mass = 1});
+    cguide::Joint joint;
+    joint.name = "a";
+    joint.type = cguide::JointType::kRevolute;
+    joint.parent = 0;
+    joint.child = 1;
+    made.joints.push_back(joint);
     cguide::AssignBodiesAndColumns(&made);
     return made;
   }();
@@ -71,6 +79,17 @@ void Read(int reader, const std::uint8_t* data, std::size_t size) {
     case 10:
       cguide::testing::ReadGoldCones(Written(".txt", data, size).string());
       return;
+    case 11:
+      io::ReadPathOmpl(Written(".txt", data, size), SmallRobot(), {});
+      return;
+    case 12: {
+      std::vector<std::string> notes;
+      io::ReadPathMoveIt(Written(".yaml", data, size), SmallRobot(), {}, &notes);
+      return;
+    }
+    case 13:
+      io::DetectPathFormat(Written(".path", data, size));
+      return;
     default:
       io::ReadRobot({.urdf = fs::path(CGUIDE_FIXTURES) / "io" / "brickman.urdf",
                      .srdf = Written(".srdf", data, size)});
@@ -82,7 +101,7 @@ void Read(int reader, const std::uint8_t* data, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   try {
-    Read(data[0] % 12, data + 1, size - 1);
+    Read(data[0] % 15, data + 1, size - 1);
   } catch (const cguide::Error&) {
   }
   return 0;

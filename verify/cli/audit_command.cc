@@ -4,6 +4,7 @@
 #include "cguide/numeric/io/guide_io.h"
 #include "cguide/verify/audit_report.h"
 #include "cguide/verify/certificate_writer.h"
+#include "cguide/verify/ci_report.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
 #include "cguide/verify/cli/subject.h"
@@ -33,6 +34,18 @@ void Deliver(const AuditArguments& arguments, const std::string& report) {
   }
 }
 
+bool ForMachines(const AuditArguments& arguments) {
+  return arguments.format == "junit" || arguments.format == "sarif";
+}
+
+template <typename Audit>
+std::string CiReport(const AuditArguments& arguments, const verify::AuditSubject& about,
+                     const Model& model, const Audit& audit) {
+  const verify::AuditChecks checks = verify::ChecksOf(model, audit);
+  return arguments.format == "junit" ? verify::WriteJunit(about, checks)
+                                     : verify::WriteSarif(about, checks);
+}
+
 int AuditSamplesOf(const AuditArguments& arguments, const Subject& subject,
                    const numeric::World& world, const verify::AuditSubject& about) {
   ProgressLine progress(arguments.common);
@@ -45,8 +58,9 @@ int AuditSamplesOf(const AuditArguments& arguments, const Subject& subject,
   };
   const verify::SampledAudit audit = verify::AuditSamples(world, subject.path, options);
   const Model& model = subject.problem.model;
-  Deliver(arguments, arguments.format == "json" ? verify::WriteAuditJson(about, model, audit)
-                                                : verify::WriteAuditText(about, model, audit));
+  Deliver(arguments, ForMachines(arguments)       ? CiReport(arguments, about, model, audit)
+                     : arguments.format == "json" ? verify::WriteAuditJson(about, model, audit)
+                                                  : verify::WriteAuditText(about, model, audit));
   return ExitCodeOf(audit);
 }
 
@@ -69,8 +83,9 @@ int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
     numeric::io::WriteFileAtomically(arguments.certificate,
                                      verify::WriteCertificate(model, subject.path, tool, proofs));
   }
-  Deliver(arguments, arguments.format == "json" ? verify::WriteWholeJson(about, model, audit)
-                                                : verify::WriteWholeText(about, model, audit));
+  Deliver(arguments, ForMachines(arguments)       ? CiReport(arguments, about, model, audit)
+                     : arguments.format == "json" ? verify::WriteWholeJson(about, model, audit)
+                                                  : verify::WriteWholeText(about, model, audit));
   return ExitCodeOf(audit);
 }
 
@@ -83,7 +98,8 @@ int RunAudit(const AuditArguments& arguments) {
     Require(arguments.dense_step == 0,
             "--certificate needs proofs, which --dense does not look for");
   }
-  const Subject subject = ReadSubject(arguments.common, arguments.path, arguments.problem);
+  const Subject subject =
+      ReadSubject(arguments.common, arguments.path, arguments.problem, arguments.reading);
   const numeric::World world(subject.problem.model);
   const verify::AuditSubject about{arguments.path, subject.problem_file,
                                    subject.problem.model_digest, kVersion};

@@ -22,6 +22,13 @@ struct CommonArguments {
   int threads = 0;     ///< 0: all that the machine has
 };
 
+/** How a path file is to be read. */
+struct PathArguments {
+  std::string format = "auto";  ///< auto, guide, csv, ompl, moveit
+  std::string joint_order;      ///< names with commas; of a matrix, which has no header
+  std::string root;             ///< x,y,z,qx,qy,qz,qw where the file has no root
+};
+
 struct PlanArguments {
   CommonArguments common;
   std::string problem;
@@ -39,10 +46,11 @@ struct PlanArguments {
 
 struct AuditArguments {
   CommonArguments common;
-  std::string path;             ///< guide JSON, or CSV together with `problem`
+  std::string path;  ///< guide JSON, or a foreign path together with `problem`
+  PathArguments reading;
   std::string problem;          ///< overrides the one the guide names
   double dense_step = 0;        ///< 0: none given
-  std::string format = "text";  ///< text, json
+  std::string format = "text";  ///< text, json, junit, sarif
   std::string output;           ///< file, or empty for stdout
   std::string certificate;      ///< file that takes the proofs, or empty
 };
@@ -70,6 +78,7 @@ struct DoctorArguments {
 struct ViewArguments {
   CommonArguments common;
   std::string guide;
+  PathArguments reading;
   std::string problem;
   std::string output;
   int frames = 0;  ///< 0: chosen from the guide's length

@@ -17,6 +17,17 @@ void AddCommon(CLI::App* command, CommonArguments* common) {
       ->check(CLI::Range(1, 1024));
 }
 
+void AddReading(CLI::App* command, PathArguments* reading) {
+  command
+      ->add_option("--path-format", reading->format, "Form of the path file; auto: by its content")
+      ->check(CLI::IsMember({"auto", "guide", "csv", "ompl", "moveit"}))
+      ->capture_default_str();
+  command->add_option("--joint-order", reading->joint_order,
+                      "Joints of the columns of an OMPL matrix, with commas; default: the model's");
+  command->add_option("--root", reading->root,
+                      "x,y,z,qx,qy,qz,qw of a root that stands still, where the path has none");
+}
+
 CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
   CLI::App* c = app.add_subcommand("plan", "Plan a guide for a problem");
   c->add_option("problem", a->problem, "Problem file (YAML)")->required();
@@ -50,13 +61,15 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
 CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
   CLI::App* c =
       app.add_subcommand("audit", "Say whether a guide or a foreign path stays in C_guide");
-  c->add_option("path", a->path, "Guide (JSON), or path (CSV) with --problem")->required();
+  c->add_option("path", a->path, "Guide, or a path of CSV, OMPL or MoveIt with --problem")
+      ->required();
   c->add_option("--problem", a->problem, "Problem file; default: the one the guide names");
+  AddReading(c, &a->reading);
   c->add_option("--dense", a->dense_step,
                 "Sample every edge at this step; default: prove whole edges")
       ->check(CLI::Range(1e-6, 1.0));
   c->add_option("--format", a->format, "Form of the report")
-      ->check(CLI::IsMember({"text", "json"}))
+      ->check(CLI::IsMember({"text", "json", "junit", "sarif"}))
       ->capture_default_str();
   c->add_option("-o,--output", a->output, "Report file; default: stdout");
   c->add_option("--certificate", a->certificate,
@@ -71,7 +84,7 @@ CLI::App* AddStability(CLI::App& app, StabilityArguments* a) {
   c->add_option("problem", a->problem, "Problem file; with --guide the default is the guide's");
   c->add_option("--posture", a->posture,
                 "start, goal, or a posture placed at the start's root pose");
-  c->add_option("--guide", a->guide, "Take the configuration from a guide or CSV path");
+  c->add_option("--guide", a->guide, "Take the configuration from a guide or a foreign path");
   c->add_option("--at", a->at, "Edge index plus s, as in 12.5")->check(CLI::NonNegativeNumber);
   c->add_option("--format", a->format, "Form of the report")
       ->check(CLI::IsMember({"text", "json"}))
@@ -97,8 +110,10 @@ CLI::App* AddDoctor(CLI::App& app, DoctorArguments* a) {
 
 CLI::App* AddView(CLI::App& app, ViewArguments* a) {
   CLI::App* c = app.add_subcommand("view", "Write a page that shows a guide");
-  c->add_option("guide", a->guide, "Guide (JSON), or path (CSV) with --problem")->required();
+  c->add_option("guide", a->guide, "Guide, or a path of CSV, OMPL or MoveIt with --problem")
+      ->required();
   c->add_option("--problem", a->problem, "Problem file; default: the one the guide names");
+  AddReading(c, &a->reading);
   c->add_option("-o,--output", a->output, "Page to write (HTML)")->required();
   c->add_option("--frames", a->frames, "Frames of the animation")->check(CLI::Range(2, 5000));
   AddCommon(c, &a->common);

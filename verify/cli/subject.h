@@ -18,9 +18,10 @@ struct Subject {
 };
 
 /** Reads a guide (JSON; its problem is the one it names unless `problem_file` is given) or a
- foreign path (CSV; `problem_file` must be given). Warns where the model has changed since.
+ foreign path (numeric/io/foreign_path.h; `problem_file` must be given). Warns where the model has
+ changed since, and says what of the file was not looked at.
  @throws Error (kBadInput, kIo). */
 Subject ReadSubject(const CommonArguments& common, const std::string& path_file,
-                    const std::string& problem_file);
+                    const std::string& problem_file, const PathArguments& reading = {});
 
 }  // namespace cguide::cli

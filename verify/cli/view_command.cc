@@ -82,7 +82,8 @@ void AddMargins(const numeric::World& world, const Path& path,
 
 int RunView(const ViewArguments& arguments) {
   RequireWritable(arguments.output);
-  const Subject subject = ReadSubject(arguments.common, arguments.guide, arguments.problem);
+  const Subject subject =
+      ReadSubject(arguments.common, arguments.guide, arguments.problem, arguments.reading);
   const numeric::World world(subject.problem.model);
   verify::SampledAuditOptions audit_options;
   audit_options.step = kViewStep;

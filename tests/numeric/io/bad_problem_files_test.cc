@@ -1,6 +1,7 @@
 #include <functional>
 #include <map>
 
+#include "cguide/numeric/io/foreign_path.h"
 #include "cguide/numeric/io/guide_io.h"
 #include "cguide/numeric/io/problem_reader.h"
 #include "tests/numeric/io/reader_tools.h"
@@ -67,27 +68,43 @@ TEST_CASE("every bad model is refused with its file, place and cause") {
   CheckCorpus("models", ".json", [](const fs::path& file) { ReadModel(file); });
 }
 
-TEST_CASE("every bad path is refused with its file, place and cause") {
+// Columns a and b, and a joint that is none.
+Robot TwoJoints() {
   Robot robot;
   robot.name = "two joints";
-  robot.links.resize(3);
-  for (const char* name : {"a", "b"}) {
+  robot.links.resize(4);
+  for (const char* name : {"a", "b", "welded"}) {
     Joint joint;
     joint.name = name;
-    joint.type = JointType::kRevolute;
+    joint.type = robot.joints.size() < 2 ? JointType::kRevolute : JointType::kFixed;
     joint.parent = static_cast<int>(robot.joints.size());
     joint.child = joint.parent + 1;
     robot.joints.push_back(joint);
   }
   AssignBodiesAndColumns(&robot);
+  return robot;
+}
+
+TEST_CASE("every bad path is refused with its file, place and cause") {
+  const Robot robot = TwoJoints();
   CheckCorpus("paths", ".csv", [&](const fs::path& file) { ReadPathCsv(file, robot); });
+  CheckCorpus("matrices", ".txt", [&](const fs::path& file) { ReadPathOmpl(file, robot, {}); });
+  CheckCorpus("trajectories", ".yaml", [&](const fs::path& file) {
+    std::vector<std::string> notes;
+    ReadPathMoveIt(file, robot, {}, &notes);
+  });
 }
 
 TEST_CASE("files that are missing or folders are errors of input and output") {
   for (const fs::path& path : {fs::path("/nowhere/file"), Fixture("bad"), fs::path()}) {
     for (const auto& refusal :
          {RefusalOf([&] { ReadProblem(path); }), RefusalOf([&] { ReadGuide(path); }),
-          RefusalOf([&] { ReadModel(path); }), RefusalOf([&] { ReadPathCsv(path, {}); })}) {
+          RefusalOf([&] { ReadModel(path); }), RefusalOf([&] { ReadPathCsv(path, {}); }),
+          RefusalOf([&] { ReadPathOmpl(path, {}, {}); }),
+          RefusalOf([&] { DetectPathFormat(path); }), RefusalOf([&] {
+            std::vector<std::string> notes;
+            ReadPathMoveIt(path, {}, {}, &notes);
+          })}) {
       REQUIRE(refusal);
       CHECK(refusal->code == Error::Code::kIo);
     }

@@ -63,6 +63,13 @@ TEST_CASE("bombs are refused before they go off") {
   std::string many;
   for (int i = 0; i < 250'000; ++i) many += "k" + std::to_string(i) + ": 1\n";
   CHECK(Message(many).find("aliases counted") != std::string::npos);
+  // Anchors without an alias: each level keeps a copy of all that is inside.
+  std::string nested = "x";
+  for (int i = 0; i < 20'000; ++i) nested += ", x";
+  for (int i = 0; i < 20; ++i) nested = "&a" + std::to_string(i) + " [" + nested + "]";
+  CHECK(Message(nested).find("aliases counted") != std::string::npos);
+  CHECK(ParseYaml("[a, b]", "f", {3, "r"}).items.size() == 2);
+  CHECK_THROWS_WITH(ParseYaml("[a, b, c]", "f", {3, "do so"}), Catch::Matchers::EndsWith("do so"));
   CHECK(Message("a: &a {b: *a}").find("alias stands inside") != std::string::npos);
   std::string deep;
   for (int i = 0; i < 2000; ++i) deep += std::string(static_cast<std::size_t>(i), ' ') + "a:\n";
