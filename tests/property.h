@@ -16,11 +16,10 @@ namespace cguide::test {
  counterexample is shrunk and fails the test with the text that rapidcheck writes about it. */
 template <typename Property>
 void CheckProperty(const std::string& sentence, Property&& property, int cases = 300) {
+  constexpr const char* kFixed = "seed=20261126";
+  setenv("RC_PARAMS", kFixed, 0);  // read by the library once, and named in its output
   rc::detail::TestParams params = rc::detail::configuration().testParams;
-  if (std::getenv("RC_PARAMS") == nullptr) {
-    params.seed = 20261126;
-    params.maxSuccess = cases;
-  }
+  if (std::string(std::getenv("RC_PARAMS")) == kFixed) params.maxSuccess = cases;
   const auto result = rc::detail::checkTestable(
       std::forward<Property>(property), rc::detail::TestMetadata{sentence, sentence}, params);
   if (result.template is<rc::detail::SuccessResult>()) {
