@@ -71,6 +71,9 @@ void Read(int reader, const std::uint8_t* data, std::size_t size) {
     case 10:
       cguide::testing::ReadGoldCones(Written(".txt", data, size).string());
       return;
+    case 11:
+      cguide::testing::ReadGoldBodies(Written(".txt", data, size).string());
+      return;
     default:
       io::ReadRobot({.urdf = fs::path(CGUIDE_FIXTURES) / "io" / "brickman.urdf",
                      .srdf = Written(".srdf", data, size)});
@@ -82,7 +85,7 @@ void Read(int reader, const std::uint8_t* data, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   try {
-    Read(data[0] % 12, data + 1, size - 1);
+    Read(data[0] % 13, data + 1, size - 1);
   } catch (const cguide::Error&) {
   }
   return 0;
