@@ -1,13 +1,11 @@
 // The one translation unit that instantiates CGAL's quadratic programming.
 #include <CGAL/Gmpz.h>
-#include <CGAL/Polytope_distance_d.h>
-#include <CGAL/Polytope_distance_d_traits_3.h>
 #include <CGAL/QP_functions.h>
 #include <CGAL/QP_models.h>
-#include <CGAL/Simple_cartesian.h>
 
 #include <exception>
 #include <string>
+#include <utility>
 
 #include "cguide/exact/cgal_solvers_internal.h"
 #include "cguide/exact/core/error.h"
@@ -18,9 +16,6 @@ namespace cguide::exact {
 namespace {
 
 using CGAL::Gmpz;
-using Kernel = CGAL::Simple_cartesian<Gmpz>;
-using Traits = CGAL::Polytope_distance_d_traits_3<Kernel, Gmpz, Gmpz>;
-using PolytopeDistance = CGAL::Polytope_distance_d<Traits>;
 using Program = CGAL::Quadratic_program<Gmpz>;
 
 template <typename Function>
@@ -42,47 +37,34 @@ Rational ToRational(const Gmpz& numerator, const Gmpz& denominator) {
   return result;
 }
 
-std::vector<Kernel::Point_3> ToPoints(const std::vector<internal::IntegerPoint>& points) {
-  std::vector<Kernel::Point_3> result;
-  for (const auto& p : points) result.emplace_back(ToGmpz(p[0]), ToGmpz(p[1]), ToGmpz(p[2]));
-  return result;
+CGAL::Quadratic_program_options BlandsRule() {
+  CGAL::Quadratic_program_options options;
+  options.set_pricing_strategy(CGAL::QP_BLAND);
+  return options;
 }
 
-/** Weights of `point` over the support points, which a basis of the quadratic program keeps
- affinely independent: the solution of [points; 1] w = [point; 1] by elimination, unique and >= 0.
- */
-ConvexCombination Barycentric(std::span<const Vector3q> points, const std::vector<int>& support,
-                              const Vector3q& point) {
-  const int n = static_cast<int>(support.size());
-  std::vector<VectorXq> rows(4, VectorXq::Zero(n + 1));
-  for (int r = 0; r < 4; ++r) {
-    for (int k = 0; k < n; ++k) rows[r][k] = r < 3 ? points[support[k]][r] : Rational(1);
-    rows[r][n] = r < 3 ? point[r] : Rational(1);
-  }
-  for (int k = 0; k < n; ++k) {
-    int pivot = k;
-    while (pivot < 4 && rows[pivot][k] == 0) ++pivot;
-    if (pivot == 4) throw Error(Error::Code::kInternal, "dependent support of a closest point");
-    std::swap(rows[k], rows[pivot]);
-    for (int r = 0; r < 4; ++r) {
-      if (r == k || rows[r][k] == 0) continue;
-      const Rational factor = rows[r][k] / rows[k][k];
-      for (int c = k; c <= n; ++c) rows[r][c] -= factor * rows[k][c];
+// Minimises |sum_i x_i p_i - sum_j y_j q_j|^2 over x, y >= 0 with sum x = sum y = 1. Bland's rule
+// alone is promised to end: CGAL's own program for this (Polytope_distance_d, which leaves no
+// choice of the rule) goes round in circles on hulls that touch in repeated or coplanar points.
+Program DistanceProgram(const std::vector<internal::IntegerPoint>& p,
+                        const std::vector<internal::IntegerPoint>& q) {
+  const int n = static_cast<int>(p.size()), count = n + static_cast<int>(q.size());
+  const auto column = [&](int i) -> const internal::IntegerPoint& {
+    return i < n ? p[i] : q[i - n];
+  };
+  Program program(CGAL::EQUAL, true, 0, false, 0);
+  for (int i = 0; i < count; ++i) {
+    program.set_a(i, i < n ? 0 : 1, 1);
+    for (int j = 0; j <= i; ++j) {
+      mpz_class product = 0;
+      for (int k = 0; k < 3; ++k) product += column(i)[k] * column(j)[k];
+      const bool same_hull = (i < n) == (j < n);
+      program.set_d(i, j, ToGmpz(mpz_class(same_hull ? 2 * product : -2 * product)));
     }
   }
-  ConvexCombination weights;
-  for (int k = 0; k < n; ++k) {
-    const Rational weight = rows[k][n] / rows[k][k];
-    if (weight != 0) weights.emplace_back(support[k], weight);
-  }
-  return weights;
-}
-
-template <typename Iterator>
-Vector3q RealizingPoint(Iterator homogeneous, const mpz_class& scale) {
-  const Gmpz denominator = homogeneous[3] * ToGmpz(scale);
-  return {ToRational(homogeneous[0], denominator), ToRational(homogeneous[1], denominator),
-          ToRational(homogeneous[2], denominator)};
+  program.set_b(0, 1);
+  program.set_b(1, 1);
+  return program;
 }
 
 }  // namespace
@@ -91,18 +73,17 @@ ConvexDistance SquaredConvexDistanceByQp(std::span<const Vector3q> a, std::span<
   Require(!a.empty() && !b.empty(), "the distance of an empty hull is not defined");
   return Guarded("the exact distance of two hulls", [&] {
     const internal::IntegerSets sets = internal::ToIntegers(a, b);
-    const auto p = ToPoints(sets.a), q = ToPoints(sets.b);
-    const PolytopeDistance solver(p.begin(), p.end(), q.begin(), q.end());
-    const std::vector<int> support_p(solver.support_points_p_indices_begin(),
-                                     solver.support_points_p_indices_end());
-    const std::vector<int> support_q(solver.support_points_q_indices_begin(),
-                                     solver.support_points_q_indices_end());
-    ConvexDistance result = internal::Assemble(
-        a, b,
-        Barycentric(a, support_p,
-                    RealizingPoint(solver.realizing_point_p_coordinates_begin(), sets.scale)),
-        Barycentric(b, support_q,
-                    RealizingPoint(solver.realizing_point_q_coordinates_begin(), sets.scale)));
+    const auto solution = CGAL::solve_nonnegative_quadratic_program(DistanceProgram(sets.a, sets.b),
+                                                                    Gmpz(), BlandsRule());
+    ConvexCombination weights_a, weights_b;
+    auto value = solution.variable_values_begin();
+    const int n = static_cast<int>(a.size()), count = n + static_cast<int>(b.size());
+    for (int i = 0; i < count; ++i, ++value) {
+      const Rational weight = ToRational((*value).numerator(), (*value).denominator());
+      if (weight == 0) continue;
+      (i < n ? weights_a : weights_b).emplace_back(i < n ? i : i - n, weight);
+    }
+    ConvexDistance result = internal::Assemble(a, b, std::move(weights_a), std::move(weights_b));
     if (!CheckConvexDistance(a, b, result)) {
       throw Error(Error::Code::kInternal, "the exact distance of two hulls has no valid proof");
     }
@@ -130,9 +111,7 @@ MembershipSolution SolveMembership(const std::vector<IntegerVector>& columns,
     program.set_b(size, 1);
     program.set_r(size, CGAL::SMALLER);
     program.set_c(count, -1);
-    CGAL::Quadratic_program_options options;
-    options.set_pricing_strategy(CGAL::QP_BLAND);
-    const auto solution = CGAL::solve_nonnegative_linear_program(program, Gmpz(), options);
+    const auto solution = CGAL::solve_nonnegative_linear_program(program, Gmpz(), BlandsRule());
 
     MembershipSolution result;
     result.feasible = !solution.is_infeasible();

@@ -32,7 +32,7 @@ struct ConvexDistance {
  @post CheckConvexDistance(a, b, result). */
 ConvexDistance SquaredConvexDistance(std::span<const Vector3q> a, std::span<const Vector3q> b);
 
-/** The same by quadratic programming: CGAL's Polytope_distance_d over the integers [Gaertner,
+/** The same by quadratic programming: CGAL's QP_solver over the integers [Gaertner,
  Schoenherr 2000]. An independent reference; slower, and its closest points may be others where
  several pairs are closest.
  @post CheckConvexDistance(a, b, result). */

@@ -176,12 +176,13 @@ Sign CompareWithRoot(const Rational& m, const Rational& s, const Rational& n) {
 Verdict ExceedsReach(const Core& a, const Core& b, const Rational& squared, const Rational& reach) {
   if (reach >= 0) return squared > reach * reach ? Verdict::kHolds : Verdict::kFails;
   if (squared > 0) return Verdict::kHolds;
+  // A flat difference of overlapping cores lies in a plane through the origin, whose normal parts
+  // them at no cost: their signed distance is 0. Concentric balls, crossing capsules.
+  if (!DifferenceIsSolid(a, b)) return Verdict::kHolds;
   bool complete = false;
   const std::vector<Vector3q> axes = Axes(a, b, &complete);
   // The difference of overlapping cores holds the origin, whose distance from the boundary is the
-  // least over the planes of its facets, and those are normal to the axes. A flat difference has no
-  // facets in this sense.
-  complete = complete && DifferenceIsSolid(a, b);
+  // least over the planes of its facets, and those are normal to the axes.
   if (!complete && DifferenceContainsBall(a, b, -reach)) return Verdict::kFails;
   for (const Vector3q& axis : axes) {
     const auto [a_low, a_high] = Extent(a, axis);

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cguide/exact/cone_membership.h"
 #include "cguide/exact/core/path.h"
+#include "cguide/exact/core/pose.h"
 #include "cguide/exact/core/rational.h"
+#include "cguide/exact/core/shape.h"
 #include "cguide/exact/core/wrench.h"
 #include "cguide/exact/equilibrium.h"
 
@@ -42,10 +45,38 @@ struct GoldStance {
   std::optional<exact::StabilityReason> reason;
 };
 
+/** Two sets of triangles, corners as doubles, and their squared distance. */
+struct GoldTriangles {
+  struct Set {
+    std::vector<Eigen::Vector3d> vertices;
+    std::vector<std::array<int, 3>> triangles;
+  };
+  std::string name;
+  Set a, b;
+  Rational squared;
+};
+
+/** How two closed sets lie: without a common point, with one but no common inner point (of what
+ has an inside), or in one another. */
+enum class Meeting { kApart, kTouch, kOverlap };
+
+/** A body of one shape and an object of one piece, both placed in W. */
+struct GoldBodies {
+  std::string name;
+  ConvexShape shape;
+  PieceShape piece;
+  Pose body_X, object_X;
+  Meeting expect = Meeting::kApart;
+  std::optional<Rational> squared;  ///< distance
+  std::optional<Rational> depth;    ///< least translation that parts them
+};
+
 /** @throws Error (kBadInput) with file:line where a line is not as specified. */
 std::vector<GoldCone> ReadGoldCones(const std::string& file);
 std::vector<GoldHulls> ReadGoldHulls(const std::string& file);
 std::vector<GoldStance> ReadGoldStances(const std::string& file);
+std::vector<GoldTriangles> ReadGoldTriangles(const std::string& file);
+std::vector<GoldBodies> ReadGoldBodies(const std::string& file);
 
 /** The doubles that equal the rationals; nothing where one is no double. */
 std::optional<Eigen::VectorXd> AsDoubles(const VectorXq& v);

@@ -149,4 +149,19 @@ TEST_CASE("Moving a shape carries the placement's error, once") {
   CHECK_THROWS_AS(Moved(moved, X), Error);
 }
 
+TEST_CASE("Cores that overlap in a common plane are parted at no cost") {
+  const auto core = [](std::vector<Vector3q> points) { return Core{std::move(points), {}, {}}; };
+  const Core point = core({{0, 0, 0}}), along = core({{-1, 0, 0}, {1, 0, 0}}),
+             across = core({{0, -1, 0}, {0, 1, 0}});
+  const Core sheet = TriangleCore({Vector3q{-1, -1, 0}, Vector3q{1, -1, 0}, Vector3q{0, 1, 0}});
+  const Rational hair(-1, mpz_class(1) << 100);
+  for (const Core* a : {&point, &along, &across, &sheet}) {
+    for (const Core* b : {&point, &along, &across, &sheet}) {
+      CHECK(ExceedsReach(*a, *b, 0, 0) == Verdict::kFails);
+      CHECK(ExceedsReach(*a, *b, 0, hair) == Verdict::kHolds);
+      CHECK(ExceedsReach(*a, *b, 0, -3) == Verdict::kHolds);
+    }
+  }
+}
+
 }  // namespace cguide::exact

@@ -90,6 +90,9 @@ void Read(int reader, const std::uint8_t* data, std::size_t size) {
     case 13:
       io::DetectPathFormat(Written(".path", data, size));
       return;
+    case 14:
+      cguide::testing::ReadGoldBodies(Written(".txt", data, size).string());
+      return;
     default:
       io::ReadRobot({.urdf = fs::path(CGUIDE_FIXTURES) / "io" / "brickman.urdf",
                      .srdf = Written(".srdf", data, size)});
@@ -101,7 +104,7 @@ void Read(int reader, const std::uint8_t* data, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   try {
-    Read(data[0] % 15, data + 1, size - 1);
+    Read(data[0] % 16, data + 1, size - 1);
   } catch (const cguide::Error&) {
   }
   return 0;

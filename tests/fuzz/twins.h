@@ -1,13 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "tests/fuzz/byte_stream.h"
 
-// One check for each pair of twins: builds a case near a tie from bytes, asks all twins, and
-// compares them through proofs over Q. Shared by the libFuzzer targets and by twin_fuzz.
+// Checks for each pair of twins, which compare them through proofs over Q. Two sources of cases:
+// bytes (libFuzzer targets, twin_fuzz --count), which reach anything, and near ties made on purpose
+// (twin_fuzz --ties), of which millions are cheap because the truth is known from their making.
 namespace cguide::fuzz {
 
 /** How many answers came from which stage. */
@@ -17,6 +19,7 @@ struct Tally {
   long exact = 0;    ///< decided exactly
   long open = 0;     ///< undecided, refused or not applicable
   long checked = 0;  ///< compared with an independent solver as well
+  long tied = 0;     ///< of the near ties: exactly on the boundary
 };
 
 /** A check: describes what is wrong, or returns an empty string. `thorough` asks the independent
@@ -30,12 +33,30 @@ std::string CheckDistance(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckTriangles(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckClearance(ByteStream& in, bool thorough, Tally* tally);
 
+/** Makes and checks one family of near ties: a few dozen about one stance or pair of bodies, each
+ within 2^-30 of a boundary of the predicate relative to the size of its numbers, or exactly on it.
+ That it is so follows from the making and is checked; what is not does not count as a case. One
+ case in `every` is also given to the independent solver. Describes what is wrong, or returns an
+ empty string. */
+using TieCheck = std::string (*)(std::mt19937_64& rng, long every, Tally*);
+
+std::string TiesOfCones(std::mt19937_64& rng, long every, Tally* tally);
+std::string TiesOfFacets(std::mt19937_64& rng, long every, Tally* tally);
+std::string TiesOfStability(std::mt19937_64& rng, long every, Tally* tally);
+std::string TiesOfDistance(std::mt19937_64& rng, long every, Tally* tally);
+std::string TiesOfTriangles(std::mt19937_64& rng, long every, Tally* tally);
+std::string TiesOfClearance(std::mt19937_64& rng, long every, Tally* tally);
+
 struct Family {
   const char* name;
   Check check;
+  TieCheck ties;
 };
-inline constexpr Family kFamilies[] = {
-    {"cone", &CheckCone},         {"facets", &CheckFacets},       {"stability", &CheckStability},
-    {"distance", &CheckDistance}, {"triangles", &CheckTriangles}, {"clearance", &CheckClearance}};
+inline constexpr Family kFamilies[] = {{"cone", &CheckCone, &TiesOfCones},
+                                       {"facets", &CheckFacets, &TiesOfFacets},
+                                       {"stability", &CheckStability, &TiesOfStability},
+                                       {"distance", &CheckDistance, &TiesOfDistance},
+                                       {"triangles", &CheckTriangles, &TiesOfTriangles},
+                                       {"clearance", &CheckClearance, &TiesOfClearance}};
 
 }  // namespace cguide::fuzz
