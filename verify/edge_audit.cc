@@ -67,10 +67,25 @@ EdgeFinding EdgeAuditor::State::Audit(int index, const Edge& edge, double widest
 namespace {
 
 struct Workspaces {
-  explicit Workspaces(const numeric::World& world) : collision(world), stability(world) {}
+  explicit Workspaces(const numeric::World& world)
+      : samples(world), collision(world), stability(world) {}
+  numeric::GuideWorkspace samples;
   EdgeWorkspace collision;
   StabilityEdgeWorkspace stability;
 };
+
+Verdict DecideWhole(const numeric::World& world, const Edge& edge,
+                    const WholeOracleOptions& options, Workspaces* x) {
+  const Verdict samples =
+      numeric::TestSampledEdge(world, edge, {options.step, options.space}, &x->samples);
+  if (samples != Verdict::kHolds) return samples;
+  EdgeCollisionOptions collision;
+  EdgeStabilityOptions stability;
+  collision.max_leaves = stability.max_leaves = options.max_leaves;
+  const Verdict free = DecideEdgeCollision(world, edge, collision, &x->collision).verdict;
+  if (free != Verdict::kHolds || options.space == numeric::Space::kFree) return free;
+  return DecideEdgeStability(world, edge, stability, &x->stability).verdict;
+}
 
 /** Lends each caller workspaces of its own. */
 class Pool {
@@ -102,13 +117,7 @@ EdgeOracle MakeWholeOracle(const numeric::World& world, const WholeOracleOptions
   auto pool = std::make_shared<Pool>(world);
   return [pool, options](const Edge& edge) {
     std::unique_ptr<Workspaces> x = pool->Take();
-    EdgeCollisionOptions collision;
-    EdgeStabilityOptions stability;
-    collision.max_leaves = stability.max_leaves = options.max_leaves;
-    Verdict verdict = DecideEdgeCollision(pool->world(), edge, collision, &x->collision).verdict;
-    if (verdict == Verdict::kHolds) {
-      verdict = DecideEdgeStability(pool->world(), edge, stability, &x->stability).verdict;
-    }
+    const Verdict verdict = DecideWhole(pool->world(), edge, options, x.get());
     pool->Return(std::move(x));
     return verdict;
   };

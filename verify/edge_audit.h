@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cguide/exact/core/path.h"
+#include "cguide/numeric/sampled_edge.h"
 #include "cguide/numeric/world.h"
 #include "cguide/verify/check/check.h"
 #include "cguide/verify/edge_collision.h"
@@ -44,13 +45,16 @@ class EdgeAuditor {
 };
 
 struct WholeOracleOptions {
+  numeric::Space space = numeric::Space::kGuide;
+  /** Samples that are looked at first: they find most bad edges at less cost. */
+  double step = 0.02;
   /** The planner gives up on an edge sooner than an audit does; undecided counts as no edge. */
-  long max_leaves = 300;
+  long max_leaves = 200;
 };
 
-/** An edge oracle that holds only where every real s of the edge is in C_guide. It decides with the
- certifier's bounds and leaves the checker to the audit of the finished guide. Safe to call from
- several threads; `world` must outlive it. */
+/** An edge oracle that holds only where every real s of the edge is in C_guide (or C_free). It
+ decides with the certifier's bounds and leaves the checker to the audit of the finished guide.
+ Joint limits are those of the ends. Safe to call from several threads; `world` must outlive it. */
 EdgeOracle MakeWholeOracle(const numeric::World& world, const WholeOracleOptions& options);
 
 }  // namespace cguide::verify

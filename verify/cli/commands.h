@@ -38,6 +38,8 @@ struct PlanArguments {
   std::uint64_t seed = 1;
   double time_limit_s = 300;
   long iteration_limit = 10'000'000;
+  std::string edges = "proved";  ///< proved, sampled
+  std::string certificate;       ///< file that takes the proofs, or empty
   double edge_step = 0.005;
   double extension = 0;  ///< 0: the planner's default
   int shortcut_rounds = 120;

@@ -45,7 +45,12 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
   c->add_option("--iteration-limit", a->iteration_limit, "Give up after this many iterations")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  c->add_option("--edge-step", a->edge_step, "Distance between the samples that test an edge")
+  c->add_option("--edges", a->edges, "How edges are tested: every real s of them, or samples")
+      ->check(CLI::IsMember({"proved", "sampled"}))
+      ->capture_default_str();
+  c->add_option("--certificate", a->certificate,
+                "File that takes the proofs of the guide's edges, for cguide-check");
+  c->add_option("--edge-step", a->edge_step, "Distance between the samples, with --edges sampled")
       ->check(CLI::Range(1e-4, 1.0))
       ->capture_default_str();
   c->add_option("--extension", a->extension, "Length of an extension of a tree")

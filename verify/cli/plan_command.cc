@@ -12,9 +12,11 @@
 #include "cguide/planner/prm.h"
 #include "cguide/planner/rrt.h"
 #include "cguide/planner/shortcut.h"
+#include "cguide/verify/certificate_writer.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
 #include "cguide/verify/cli/version.h"
+#include "cguide/verify/whole_audit.h"
 
 namespace cguide::cli {
 namespace {
@@ -27,12 +29,28 @@ using planner::StopReason;
 // The stream of random numbers that shortcuts draw from, apart from those of the search.
 constexpr std::uint64_t kShortcutStream = 0x5c0ffee;
 
+/** Whether edges are decided whole. The paper's nearest contacts are not continuous: only samples
+ of them can be had. */
+bool DecidesWholeEdges(const PlanArguments& arguments, const Model& model) {
+  return arguments.edges == "proved" && model.contact.model == ContactModel::kSites;
+}
+
+EdgeOracle MakeOracle(const PlanArguments& arguments, const World& world, numeric::Space space) {
+  if (DecidesWholeEdges(arguments, world.model())) {
+    verify::WholeOracleOptions options;
+    options.space = space;
+    return verify::MakeWholeOracle(world, options);
+  }
+  return numeric::MakeSampledOracle(world, {arguments.edge_step, space});
+}
+
 struct Plan {
   planner::Endpoint start;
   planner::Endpoint goal;
   PlanResult result;
   double shortcut_seconds = 0;
   double length_before = 0;
+  std::string edges;  ///< how they were tested, as the guide says it
 };
 
 planner::ExtensionOptions MakeExtension(const PlanArguments& arguments) {
@@ -82,8 +100,7 @@ Plan MakePlan(const PlanArguments& arguments, const World& world, const Problem&
       planner::PrepareEndpoint(world, problem.goal, extension.space, "goal", {}, &workspace);
   if (plan.start.projected) Say(arguments.common, "the start was projected into C_guide");
   if (plan.goal.projected) Say(arguments.common, "the goal was projected into C_guide");
-  const EdgeOracle oracle =
-      numeric::MakeSampledOracle(world, {arguments.edge_step, extension.space});
+  const EdgeOracle oracle = MakeOracle(arguments, world, extension.space);
   plan.result = Search(arguments, world, problem, plan, oracle, extension);
   if (plan.result.stop != StopReason::kSolved) return plan;
   plan.length_before = planner::Length(plan.result.waypoints);
@@ -116,6 +133,32 @@ std::map<std::string, long> Counters(const PlanResult& result) {
   return counters;
 }
 
+/** How the guide's edges were tested; where they were decided whole, the checker has the last word,
+ and the proofs go into the certificate. */
+std::string ConcludeEdges(const PlanArguments& arguments, const World& world, const Plan& plan) {
+  const Model& model = world.model();
+  if (!DecidesWholeEdges(arguments, model)) return "sampled(" + Short(arguments.edge_step) + ")";
+  if (arguments.space == "free") return "whole, collisions only";
+  const Path path{ColumnNames(model.robot), plan.result.waypoints};
+  const verify::WholeAudit audit = verify::AuditWhole(world, path, {});
+  std::vector<const check::EdgeProof*> proofs;
+  for (std::size_t i = 0; i < audit.edges.size(); ++i) {
+    const verify::EdgeFinding& edge = audit.edges[i];
+    if (edge.proof) proofs.push_back(&*edge.proof);
+    if (!edge.proof) {
+      Say(arguments.common, "edge " + std::to_string(i) + " is not proved; see cguide audit");
+    }
+  }
+  if (!arguments.certificate.empty()) {
+    numeric::io::WriteFileAtomically(
+        arguments.certificate,
+        verify::WriteCertificate(model, path, std::string("cguide ") + kVersion, proofs));
+  }
+  return proofs.size() == audit.edges.size() ? "proved"
+                                             : "proved " + std::to_string(proofs.size()) + " of " +
+                                                   std::to_string(audit.edges.size());
+}
+
 void WriteGuideFile(const PlanArguments& arguments, const Problem& problem, const Plan& plan) {
   numeric::io::Guide guide;
   guide.path = {ColumnNames(problem.model.robot), plan.result.waypoints};
@@ -126,7 +169,7 @@ void WriteGuideFile(const PlanArguments& arguments, const Problem& problem, cons
   guide.problem_digest = problem.problem_digest;
   guide.tool_version = kVersion;
   guide.seed = arguments.seed;
-  guide.edges = "sampled(" + Short(arguments.edge_step) + ")";
+  guide.edges = plan.edges;
   guide.start_projected = plan.start.projected;
   guide.goal_projected = plan.goal.projected;
   guide.counters = Counters(plan.result);
@@ -161,16 +204,14 @@ int Conclude(const PlanArguments& arguments, const Problem& problem, const Plan&
   }
   WriteGuideFile(arguments, problem, plan);
   std::cout << arguments.output << ": " << result.waypoints.size() << " waypoints, length "
-            << Short(planner::Length(result.waypoints)) << ", edges: sampled("
-            << Short(arguments.edge_step) << ")\n";
+            << Short(planner::Length(result.waypoints)) << ", edges: " << plan.edges << "\n";
   Say(arguments.common,
       "solved in " + Short(result.seconds) + " s (" + std::to_string(result.iterations) +
           " iterations, " + std::to_string(result.start_nodes + result.goal_nodes) +
           " nodes), shortcuts " + Short(plan.shortcut_seconds) + " s, length " +
           Short(plan.length_before) + " -> " + Short(planner::Length(result.waypoints)));
   Say(arguments.common, "next: cguide view " + arguments.output +
-                            " -o page.html   or   cguide audit " + arguments.output +
-                            " --dense 0.002");
+                            " -o page.html   or   cguide audit " + arguments.output);
   return kExitOk;
 }
 
@@ -179,10 +220,12 @@ int Conclude(const PlanArguments& arguments, const Problem& problem, const Plan&
 int RunPlan(const PlanArguments& arguments) {
   RequireWritable(arguments.output);
   if (!arguments.stats.empty()) RequireWritable(arguments.stats);
+  if (!arguments.certificate.empty()) RequireWritable(arguments.certificate);
   const Problem problem = numeric::io::ReadProblem(arguments.problem);
   Warn(arguments.common, problem.warnings);
   const World world(problem.model);
-  const Plan plan = MakePlan(arguments, world, problem);
+  Plan plan = MakePlan(arguments, world, problem);
+  if (plan.result.stop == StopReason::kSolved) plan.edges = ConcludeEdges(arguments, world, plan);
   const int code = Conclude(arguments, problem, plan);
   WriteStats(arguments, plan);
   return code;
