@@ -24,10 +24,10 @@ struct Place {
   std::size_t index = 0;
 };
 
-/** The index in kRoot where the name is NAME/trans_x or the like. */
+/** The index in kRoot where the name is NAME/trans_x or the like, NAME not empty. */
 std::optional<std::size_t> RootPart(std::string_view name) {
   const std::size_t slash = name.rfind('/');
-  if (slash == std::string_view::npos) return std::nullopt;
+  if (slash == std::string_view::npos || slash == 0) return std::nullopt;
   const auto found = std::find(kRoot.begin(), kRoot.end(), name.substr(slash + 1));
   if (found == kRoot.end()) return std::nullopt;
   return static_cast<std::size_t>(found - kRoot.begin());

@@ -110,6 +110,7 @@ TEST_CASE("the report does not depend on the number of threads") {
   CHECK(json["verdict"] == "violated");
   CHECK(json["violations"].size() > 0);
   CHECK(json["edges"] == 12);
+  CHECK(Audit(room, path, 0.01, 2).done == std::vector<char>(12, 1));
 }
 
 TEST_CASE("the text report names places, values and stages") {
