@@ -1,10 +1,11 @@
 // What a proof of whole edges finds in guides that were planned with the usual sampled edge test,
 // as Markdown tables: planners by row, the violations that survive 10 % more contact and friction
 // first.
-//   guide_experiment [--seeds N] [--ompl-seeds N] [--limit SECONDS] [--dense STEP] [--raw] [PROBLEM
+//   guide_experiment [--seeds N] [--ompl-seeds N] [--limit SECONDS] [--dense STEP] [--projected]
+//   [PROBLEM
 //   ...]
-// Needs no OMPL; says where it was not built with it. --dense 0 leaves the samples out; --raw lets
-// OMPL draw samples that are not projected.
+// --dense 0 leaves the samples out; --projected moves OMPL's samples into C_guide by Algorithm 3.
+// Without OMPL its rows say so.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -31,11 +32,11 @@ using namespace cguide::benchmark;  // NOLINT
 using benchmark_tools::Quantile;
 
 struct Arguments {
-  int seeds = 20;
-  int ompl_seeds = 5;
+  int seeds = 50;
+  int ompl_seeds = 50;
   double limit = 60;
   double dense = 1e-4;
-  OmplSamples samples = OmplSamples::kProjected;
+  OmplSamples samples = OmplSamples::kRaw;
   std::vector<std::string> problems;
 };
 
@@ -228,8 +229,8 @@ Arguments Parse(int argc, char** argv) {
       a.limit = value();
     } else if (word == "--dense") {
       a.dense = value();
-    } else if (word == "--raw") {
-      a.samples = OmplSamples::kRaw;
+    } else if (word == "--projected") {
+      a.samples = OmplSamples::kProjected;
     } else {
       a.problems.push_back(word);
     }

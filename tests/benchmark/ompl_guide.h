@@ -13,7 +13,7 @@ namespace cguide::benchmark {
 const char* OmplVersion();
 
 enum class OmplSamples {
-  kRaw,       ///< as the sampling rules give them: almost none is in C_guide
+  kRaw,       ///< as the sampling rules give them; almost none is in C_guide
   kProjected  ///< by our Algorithm 3, as in Algorithm 2 of the paper
 };
 
@@ -21,7 +21,7 @@ struct OmplOptions {
   double step = 0.05;   ///< between the states an edge is tested at (metric of path.h)
   double range = 0.25;  ///< of RRTConnect: longest edge
   double time_limit_s = 60;
-  OmplSamples samples = OmplSamples::kProjected;
+  OmplSamples samples = OmplSamples::kRaw;
 };
 
 /** A guide by OMPL's RRTConnect and DiscreteMotionValidator in position x SO(3) x joints, with our
