@@ -181,5 +181,5 @@ int main(int argc, char** argv) {
   ReportCollisions(world, edges);
   ReportStability(world, edges);
   ReportProofs(world, edges);
-  benchmark::ReportLipschitz(problem, edges, 200);
+  return benchmark::ReportLipschitz(problem, edges, 200) == 0 ? 0 : 1;
 }

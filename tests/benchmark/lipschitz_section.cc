@@ -102,9 +102,11 @@ Tally Compare(const numeric::World& world, const std::vector<Edge>& edges, Speed
   return tally;
 }
 
-void ReportEdges(const char* name, const numeric::World& world, const std::vector<Edge>& edges) {
+int ReportEdges(const char* name, const numeric::World& world, const std::vector<Edge>& edges) {
+  int contradicted = 0;
   for (const SpeedBounds bounds : {SpeedBounds::kAlongChain, SpeedBounds::kFromCommonBody}) {
     const Tally t = Compare(world, edges, bounds);
+    contradicted += t.contradicted;
     if (t.ours.empty()) {
       std::printf("| %s | %zu | none proved by both | | | |\n", name, edges.size());
       continue;
@@ -117,6 +119,7 @@ void ReportEdges(const char* name, const numeric::World& world, const std::vecto
                 GeometricMean(t.ratios), Median(t.ratios));
     if (t.contradicted > 0) std::printf("(%d contradictions)\n", t.contradicted);
   }
+  return contradicted;
 }
 
 /** A box on a swinging arm whose lowest corner passes `clearance` above the floor. */
@@ -156,14 +159,13 @@ void ReportGraze() {
   }
 }
 
-/** The tip of an arm of 1 m swings 0.1 rad through the lowest point: in a band of 1 mm above the
- floor it starts and ends at 0.9 mm and sinks to 0.9 mm - 1 m (1 - cos 0.05) = -0.35 mm, so the
- arm is shortened to 0.6 m (a leg), which leaves 0.15 mm. */
+/** The tip of a leg of 0.6 m swings 0.1 rad through its lowest point. It starts and ends 0.9 mm
+ above the floor and sinks by 0.6 m (1 - cos 0.05) = 0.75 mm in between: 0.15 mm are left of a band
+ of 1 mm. */
 void ReportBand() {
   Model model = Pendulum(0);
   const double arm = 0.6, half = 0.05, top = 0.9e-3;
-  model.robot.links[1].shapes[0] = {{{0, 0, -arm / 2}, {}}, Box{{0.0, 0.0, arm}}};
-  model.robot.links[1].shapes[0].geometry = Capsule{1e-4, arm - 2e-4};
+  model.robot.links[1].shapes[0] = {{{0, 0, -arm / 2}, {}}, Capsule{1e-4, arm - 2e-4}};
   model.sites = {{1, {0, 0, -arm}, 0}};
   model.contact.bodies = {1};
   model.contact.epsilon = 1e-3;
@@ -181,7 +183,7 @@ void ReportBand() {
 
 }  // namespace
 
-void ReportLipschitz(const numeric::Problem& problem, const std::vector<Edge>& guides, int count) {
+int ReportLipschitz(const numeric::Problem& problem, const std::vector<Edge>& guides, int count) {
   Model model = problem.model;
   model.require = GuideRequirement::kContact;
   const numeric::World wide(model);
@@ -197,13 +199,14 @@ void ReportLipschitz(const numeric::Problem& problem, const std::vector<Edge>& g
       "speeds "
       "(nodes) | ratio of means, geometric mean, median |");
   std::puts("|---|---|---|---|---|---|");
-  ReportEdges("extensions by 0.25, 5 mm", contact,
-              Extensions(planning, problem.sampling, count, 0.25));
-  ReportEdges("extensions by 0.1, 5 mm", contact,
-              Extensions(planning, problem.sampling, count, 0.1));
-  ReportEdges("guides, the problem's band", wide, guides);
+  int contradicted = ReportEdges("extensions by 0.25, 5 mm", contact,
+                                 Extensions(planning, problem.sampling, count, 0.25));
+  contradicted += ReportEdges("extensions by 0.1, 5 mm", contact,
+                              Extensions(planning, problem.sampling, count, 0.1));
+  contradicted += ReportEdges("guides, the problem's band", wide, guides);
   ReportGraze();
   ReportBand();
+  return contradicted;
 }
 
 }  // namespace cguide::benchmark
