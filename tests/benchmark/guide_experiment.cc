@@ -87,7 +87,11 @@ Row RunPlanner(const Planner& planner, double dense, GuideJudge* judge) {
     const Row before = row;
     for (std::size_t i = 0; i + 1 < q.size(); ++i) {
       const Edge edge{q[i], q[i + 1]};
-      AddEdge(judge->Judge(edge), dense > 0 && judge->FailsSampled(edge, dense), &row);
+      const EdgeJudgement judgement = judge->Judge(edge);
+      AddEdge(judgement, dense > 0 && judge->FailsSampled(edge, dense), &row);
+      if (judgement.verdict == Verdict::kUndecided) {
+        std::fprintf(stderr, "  edge %zu is undecided: %s\n", i, judgement.reason.c_str());
+      }
     }
     row.refuted += row.failed > before.failed;
     row.hard += row.hard_edges > before.hard_edges;
@@ -164,7 +168,7 @@ std::string Spread(const std::vector<EdgeFault>& faults, double EdgeFault::*figu
   const auto text = [](double value) -> std::string {
     if (!std::isfinite(value)) return "no position would do";
     char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.2g", value);
+    std::snprintf(buffer, sizeof buffer, value < 100 ? "%.2g" : "%.0f", value);
     return buffer;
   };
   return text(Quantile(x, 0.5)) + ", " + text(Quantile(x, 1));

@@ -45,6 +45,11 @@ Model Changed(Model model, double epsilon_factor, double friction_factor) {
   return model;
 }
 
+std::string Reason(const verify::EdgeFinding& finding) {
+  if (finding.collision.verdict != Verdict::kHolds) return "two bodies are too near to tell";
+  return finding.refusal.empty() ? finding.stability.reason : "the checker: " + finding.refusal;
+}
+
 double Gap(const Contact& contact) { return contact.distance - contact.radius; }
 
 }  // namespace
@@ -81,7 +86,9 @@ const numeric::World& GuideJudge::world() const { return state_->world; }
 
 EdgeJudgement GuideJudge::Judge(const Edge& edge) {
   EdgeJudgement judgement;
-  judgement.verdict = VerdictOf(state_->auditor.Audit(0, edge));
+  const verify::EdgeFinding finding = state_->auditor.Audit(0, edge);
+  judgement.verdict = VerdictOf(finding);
+  if (judgement.verdict == Verdict::kUndecided) judgement.reason = Reason(finding);
   judgement.within_limits = numeric::WithinLimits(state_->world.tree(), edge.from) &&
                             numeric::WithinLimits(state_->world.tree(), edge.to);
   if (judgement.verdict == Verdict::kFails) state_->JudgeFaults(edge, &judgement);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "cguide/exact/core/path.h"
@@ -34,6 +35,7 @@ struct EdgeFault {
 
 struct EdgeJudgement {
   Verdict verdict = Verdict::kUndecided;  ///< of verify::EdgeAuditor: kHolds is proved
+  std::string reason;                     ///< one clause where undecided
   bool within_limits = true;              ///< both ends keep the joint limits
   std::vector<EdgeFault> faults;          ///< where kFails: of collision, of balance, or both
 };
