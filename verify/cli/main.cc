@@ -78,7 +78,8 @@ CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
       ->capture_default_str();
   c->add_option("-o,--output", a->output, "Report file; default: stdout");
   c->add_option("--certificate", a->certificate,
-                "File that takes the proofs, for cguide-check; not with --dense");
+                "File that takes the proofs, for cguide-check")
+      ->excludes("--dense");
   AddCommon(c, &a->common);
   return c;
 }
