@@ -78,6 +78,7 @@ NearEvidence ReadNear(const View& view) {
   const View list = view.Get("corners");
   for (std::size_t i = 0; i < list.Size(); ++i) {
     const View corner = list.At(i);
+    if (corner.Size() != 2) corner.Fail("a corner is [index, weight]");
     near.corners.emplace_back(corner.At(0).Index(1'000'000'000), corner.At(1).Number());
   }
   return near;
