@@ -22,6 +22,19 @@ using Basis = std::array<std::int32_t, 5>;
 
 inline double Largest(const Vector6d& y) { return y.cwiseAbs().maxCoeff(); }
 
+/** The vector of fraction[k] 2^exponent[k], made a unit one; not zero. */
+inline Vector6d Unit(const double* fraction, const int* exponent) {
+  int top = std::numeric_limits<int>::min();
+  for (int k = 0; k < 6; ++k) {
+    if (fraction[k] != 0) top = std::max(top, exponent[k] + std::ilogb(fraction[k]));
+  }
+  Vector6d y;
+  for (int k = 0; k < 6; ++k) {
+    y[k] = fraction[k] == 0 ? 0 : std::ldexp(fraction[k], exponent[k] - top);
+  }
+  return y.normalized();
+}
+
 /** The run over integers of E words an entry; n generators, rows n .. of unit vectors behind them.
 
  Why it is the exact algorithm: by induction every ray has five rows that are exactly independent
@@ -43,12 +56,17 @@ class CertifiedRun {
         n_(n),
         rank_(rank),
         tolerance_(impl->rows.determinant_error),
-        counters_(*counters) {}
+        counters_(*counters) {
+    w_.fixed_rows.clear();
+  }
 
   /** Whether these rows (six) are independent, exactly. */
   bool Independent(const std::array<int, 6>& rows) {
     const Basis five{rows[0], rows[1], rows[2], rows[3], rows[4]};
     if (std::abs(FloatNormal(five).dot(w_.rows.rows[rows[5]])) > tolerance_) return true;
+    std::array<Fixed, 6> z;
+    FixedNormal(five, &z);
+    if (FixedSign(z, rows[5]) != 0) return true;
     Wide<5 * E> y[6];
     ExactNormal(five, y);
     return ExactProduct(y, rows[5]).Sign() != 0;
@@ -95,11 +113,28 @@ class CertifiedRun {
     for (int k = 1; k < 6; ++k) sum += y[k] * Row(i)[k];
     return sum;
   }
-  const Wide<5 * E>* StoredNormal(int slot);
-  int ExactSide(int slot, int i) {
-    ++counters_.exact_sides;
-    return w_.rays.orientation[slot] * ExactProduct(StoredNormal(slot), i).Sign();
+  const Fixed* FixedRow(int i) {
+    if (w_.fixed_rows.empty()) FillFixedRows();
+    return w_.fixed_rows[i].data();
   }
+  void FillFixedRows();
+  void FixedNormal(const Basis& b, std::array<Fixed, 6>* y) {
+    NormalOfRows<Fixed, Fixed, Fixed>(FixedRow(b[0]), FixedRow(b[1]), FixedRow(b[2]),
+                                      FixedRow(b[3]), FixedRow(b[4]), y->data());
+  }
+  // Zero where it is not certain.
+  int FixedSign(const std::array<Fixed, 6>& y, int i) {
+    const Fixed* const row = FixedRow(i);
+    Fixed sum = y[0] * row[0];
+    for (int k = 1; k < 6; ++k) sum += y[k] * row[k];
+    return sum.v > kFixedDeterminantError ? 1 : sum.v < -kFixedDeterminantError ? -1 : 0;
+  }
+  const std::array<Fixed, 6>& StoredFixed(int slot);
+  const Wide<5 * E>* StoredNormal(int slot);
+  bool HoldsThree(int begin, int end, int slot, int* first, int* last) const;
+  bool HoldsPointOf(int i, int slot) const;
+  bool HoldsForceOf(int i, int slot) const;
+  int ExactSide(int slot, int i);
   void Store(int slot, const Basis& basis, const Vector6d& y, int inside);
   bool TryBasis(const Basis& basis, Vector6d* y) const;
   Basis FindBasis(int p, int q, int i, Vector6d* y);
@@ -113,6 +148,115 @@ class CertifiedRun {
   const double tolerance_;
   CertifiedDual::Counters& counters_;
 };
+
+// Columns are scaled up to kFixedBits; a unit vector may have any length.
+template <int E>
+void CertifiedRun<E>::FillFixedRows() {
+  const int count = static_cast<int>(integers_.size() / 6);
+  w_.fixed_rows.resize(count);
+  for (int i = 0; i < count; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      const Wide<E>& x = Row(i)[k];
+      w_.fixed_rows[i][k] = i < n_ ? Rescaled(x, kFixedBits - w_.rows.bits[k])
+                                   : Fixed{x.IsZero() ? Int128{0} : Int128{1} << (kFixedBits - 1)};
+    }
+  }
+}
+
+template <int E>
+const std::array<Fixed, 6>& CertifiedRun<E>::StoredFixed(int slot) {
+  std::array<Fixed, 6>& stored = w_.rays.fixed[slot];
+  if (!w_.rays.has_fixed[slot]) {
+    ++counters_.fixed_normals;
+    w_.rays.has_fixed[slot] = 1;
+    FixedNormal(w_.rays.basis[slot], &stored);
+  }
+  return stored;
+}
+
+/** Whether the vectors are independent, for certain. Their entries are at most one in size and came
+ of at most two roundings; then a term of the determinant is rounded at most eight times, of which
+ five by the formula [Higham 2002, lemma 3.1], so that the error is at most
+ 6 * 8 * 2^-53 * 1.01 < 5.4e-15. */
+inline bool IndependentForces(const double* a, const double* b, const double* c) {
+  const double determinant = a[0] * (b[1] * c[2] - b[2] * c[1]) -
+                             a[1] * (b[0] * c[2] - b[2] * c[0]) +
+                             a[2] * (b[0] * c[1] - b[1] * c[0]);
+  return std::abs(determinant) > 1e-14;
+}
+
+/** Whether the ray is certain to be in the planes of all forces at the point of generator `begin`,
+ as it is in those of three that are independent; the ends of those that it holds. */
+template <int E>
+bool CertifiedRun<E>::HoldsThree(int begin, int end, int slot, int* first, int* last) const {
+  *first = begin, *last = end - 1;
+  while (*first < *last && !w_.graph.Holds(*first, slot)) ++*first;
+  while (*first < *last && !w_.graph.Holds(*last, slot)) --*last;
+  const auto& rows = w_.rows.rows;
+  for (int k = *first + 1; k < *last; ++k) {
+    if (w_.graph.Holds(k, slot) &&
+        IndependentForces(rows[*first].data(), rows[k].data(), rows[*last].data())) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/** Whether the ray is certain to be in the planes of all forces at the point of generator i. Where
+ it is in those of two at that point, and of all at another point, the force along the line of the
+ points is a third: it has the same moment at both. */
+template <int E>
+bool CertifiedRun<E>::HoldsPointOf(int i, int slot) const {
+  const auto [begin, end] = w_.same_point[i];
+  if (begin + 1 == end) return false;
+  int first, last;
+  if (HoldsThree(begin, end, slot, &first, &last)) return true;
+  if (first == last) return false;
+  for (int k = 0; k < n_; k = w_.same_point[k][1]) {
+    int a, b;
+    if (k == begin || w_.same_point[k][1] - k < 3) continue;
+    if (!HoldsThree(k, w_.same_point[k][1], slot, &a, &b)) continue;
+    const Eigen::Vector3d line =
+        (w_.points[k] - w_.points[begin]).cwiseProduct(w_.rows.column_scale.head<3>());
+    const double size = line.cwiseAbs().maxCoeff();
+    if (!(size > 1e-200)) continue;  // what underflows is none of the error's concern then
+    const Eigen::Vector3d scaled = line / size;
+    const auto& rows = w_.rows.rows;
+    if (IndependentForces(rows[first].data(), rows[last].data(), scaled.data())) return true;
+  }
+  return false;
+}
+
+/** Whether the ray is certain to be in the plane of generator i because five independent rows that
+ hold it have but two forces u, v, one of them that of i: (u x v, 0) is a normal of the five, hence
+ the ray is along it. (Were u and v parallel, the five would have rank four at most.) */
+template <int E>
+bool CertifiedRun<E>::HoldsForceOf(int i, int slot) const {
+  if (w_.forces.empty()) return false;
+  const Eigen::Vector3d& u = w_.forces[i];
+  int other = -1, same = 0;
+  for (const int row : w_.rays.basis[slot]) {
+    if (row >= n_) return false;
+    if (w_.forces[row] == u) {
+      ++same;
+    } else if (other < 0) {
+      other = row;
+    } else if (w_.forces[row] != w_.forces[other]) {
+      return false;
+    }
+  }
+  return same > 0;
+}
+
+// By what is known of the generators, then by ever wider numbers.
+template <int E>
+int CertifiedRun<E>::ExactSide(int slot, int i) {
+  ++counters_.exact_sides;
+  if (HoldsForceOf(i, slot) || HoldsPointOf(i, slot)) return 0;
+  int sign = FixedSign(StoredFixed(slot), i);
+  if (sign == 0) sign = ExactProduct(StoredNormal(slot), i).Sign();
+  return w_.rays.orientation[slot] * sign;
+}
 
 template <int E>
 const Wide<5 * E>* CertifiedRun<E>::StoredNormal(int slot) {
@@ -136,12 +280,15 @@ void CertifiedRun<E>::Store(int slot, const Basis& basis, const Vector6d& y, int
     const std::size_t size = 2 * needed + 64;
     rays.basis.resize(size);
     rays.orientation.resize(size);
+    rays.has_fixed.resize(size);
     rays.has_exact.resize(size);
+    rays.fixed.resize(size);
     rays.exact.resize(size * kWords);
   }
   ++counters_.rays;
   rays.basis[slot] = basis;
   rays.orientation[slot] = 1;
+  rays.has_fixed[slot] = 0;
   rays.has_exact[slot] = 0;
   const double value = y.dot(w_.rows.rows[inside]);
   const int side = value > tolerance_ ? 1 : value < -tolerance_ ? -1 : ExactSide(slot, inside);
@@ -301,26 +448,31 @@ void CertifiedRun<E>::Add(int i) {
   for (const int s : outside) w_.table.Set(s, Vector6d::Zero());
 }
 
-/** Unit normal in the space of the generators; from integers where the doubles are weak. */
+/** Unit normal in the space of the generators; from wider numbers where the doubles are weak. */
 template <int E>
 Vector6d CertifiedRun<E>::Normal(int slot) {
-  Vector6d y = w_.table.Get(slot);
+  const Vector6d y = w_.table.Get(slot);
   if (Largest(y) > 1e7 * tolerance_) return w_.rows.Unscaled(y).normalized();
-  const Wide<5 * E>* const exact = StoredNormal(slot);
-  mpz_class integer[6];
-  int exponent[6], top = std::numeric_limits<int>::min();
+  const double orientation = w_.rays.orientation[slot];
   double fraction[6];
+  int exponent[6];
+  Int128 largest = 0;
   for (int k = 0; k < 6; ++k) {
-    integer[k] = ToInteger(exact[k]);
+    const Int128 v = StoredFixed(slot)[k].v;
+    largest = std::max(largest, v < 0 ? -v : v);
+    fraction[k] = orientation * static_cast<double>(v);
+    exponent[k] = kFixedBits - w_.rows.bits[k] - w_.rows.low[k];
+  }
+  // Each is within 29 of the exact one (fixed_point_internal.h).
+  if (largest > Int128{29} * 10000000) return Unit(fraction, exponent);
+  const Wide<5 * E>* const exact = StoredNormal(slot);
+  for (int k = 0; k < 6; ++k) {
+    const mpz_class integer = ToInteger(exact[k]);
     long e = 0;
-    fraction[k] = w_.rays.orientation[slot] * mpz_get_d_2exp(&e, integer[k].get_mpz_t());
+    fraction[k] = orientation * mpz_get_d_2exp(&e, integer.get_mpz_t());
     exponent[k] = static_cast<int>(e) - w_.rows.low[k];
-    if (fraction[k] != 0) top = std::max(top, exponent[k]);
   }
-  for (int k = 0; k < 6; ++k) {
-    y[k] = fraction[k] == 0 ? 0 : std::ldexp(fraction[k], exponent[k] - top);
-  }
-  return y.normalized();
+  return Unit(fraction, exponent);
 }
 
 }  // namespace cguide::numeric
