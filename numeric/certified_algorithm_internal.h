@@ -500,16 +500,16 @@ Vector6d CertifiedRun<E>::Normal(int slot) {
   if (Largest(y) > 1e7 * tolerance_) return w_.rows.Unscaled(y).normalized();
   const double orientation = w_.rays.orientation[slot];
   double fraction[6];
-  int exponent[6];
-  Int128 largest = 0;
+  int exponent[6], top = std::numeric_limits<int>::min(), last = top;
   for (int k = 0; k < 6; ++k) {
-    const Int128 v = StoredFixed(slot)[k].v;
-    largest = std::max(largest, v < 0 ? -v : v);
-    fraction[k] = orientation * static_cast<double>(v);
+    fraction[k] = orientation * static_cast<double>(StoredFixed(slot)[k].v);
     exponent[k] = kFixedBits - w_.rows.bits[k] - w_.rows.low[k];
+    last = std::max(last, exponent[k]);
+    if (fraction[k] != 0) top = std::max(top, exponent[k] + std::ilogb(fraction[k]));
   }
-  // Each is within 29 of the exact one (fixed_point_internal.h).
-  if (largest > Int128{29} * 10000000) return Unit(fraction, exponent);
+  // Each is within 29 < 2^5 of the exact one (fixed_point_internal.h), rounded: 2^-24 of the
+  // largest.
+  if (top != std::numeric_limits<int>::min() && top - last > 29) return Unit(fraction, exponent);
   const Wide<5 * E>* const exact = StoredNormal(slot);
   for (int k = 0; k < 6; ++k) {
     const mpz_class integer = ToInteger(exact[k]);
