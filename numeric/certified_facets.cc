@@ -9,6 +9,7 @@
 
 #include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/certified_algorithm_internal.h"
+#include "cguide/numeric/certified_sides_internal.h"
 #include "cguide/numeric/fp_guard.h"
 
 namespace cguide::numeric {
