@@ -1,5 +1,6 @@
 // The cost of certifying the edges of guides, against sampling them: kinematics over a leaf, and
-// freedom from collisions over whole edges. One thread, one run; medians of CPU time.
+// freedom from collisions over whole edges; and against bounds on speeds. One thread, one run; CPU
+// time.
 //   edge_benchmark [PROBLEM] [SEEDS]
 #include <algorithm>
 #include <cstdio>
@@ -14,6 +15,7 @@
 #include "cguide/verify/check/check.h"
 #include "cguide/verify/edge_collision.h"
 #include "cguide/verify/edge_stability.h"
+#include "tests/benchmark/lipschitz_section.h"
 #include "tests/benchmark/timing.h"
 
 namespace {
@@ -179,4 +181,5 @@ int main(int argc, char** argv) {
   ReportCollisions(world, edges);
   ReportStability(world, edges);
   ReportProofs(world, edges);
+  return benchmark::ReportLipschitz(problem, edges, 200) == 0 ? 0 : 1;
 }

@@ -1,0 +1,13 @@
+#include "tests/benchmark/ompl_guide.h"
+
+namespace cguide::benchmark {
+
+const char* OmplVersion() { return nullptr; }
+
+std::vector<Configuration> PlanWithOmpl(const numeric::World&, const numeric::SamplingRules&,
+                                        const Configuration&, const Configuration&, std::uint64_t,
+                                        const OmplOptions&) {
+  return {};
+}
+
+}  // namespace cguide::benchmark

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cguide/exact/core/path.h"
+#include "cguide/numeric/sampling.h"
+#include "cguide/numeric/world.h"
+
+namespace cguide::benchmark {
+
+/** The version of OMPL this program was built with; null where it was built without. */
+const char* OmplVersion();
+
+enum class OmplSamples {
+  kRaw,       ///< as the sampling rules give them; almost none is in C_guide
+  kProjected  ///< by our Algorithm 3, as in Algorithm 2 of the paper
+};
+
+struct OmplOptions {
+  double step = 0.05;   ///< between the states an edge is tested at (metric of path.h)
+  double range = 0.25;  ///< of RRTConnect: longest edge
+  double time_limit_s = 60;
+  OmplSamples samples = OmplSamples::kRaw;
+};
+
+/** A guide by OMPL's RRTConnect and DiscreteMotionValidator in position x SO(3) x joints, with our
+ metric, sampling rules and validity test (TestConfiguration in C_guide). Waypoints from start to
+ goal; empty where none was found in time, or without OMPL. The clock ends a search, so that which
+ seeds are solved depends on the machine. */
+std::vector<Configuration> PlanWithOmpl(const numeric::World& world,
+                                        const numeric::SamplingRules& sampling,
+                                        const Configuration& start, const Configuration& goal,
+                                        std::uint64_t seed, const OmplOptions& options);
+
+}  // namespace cguide::benchmark
