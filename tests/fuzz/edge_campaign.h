@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "tests/fuzz/edge_cases.h"
+
+namespace cguide::fuzz {
+
+/** What became of edges of one kind. */
+struct EdgeTally {
+  long cases = 0;
+  long unmade = 0;  ///< seeds whose making rounding spoilt
+  long proved = 0, refuted = 0, undecided = 0;
+  long kept = 0, violated = 0;  ///< truth from the making
+  long wrong = 0;
+  long samples = 0;                     ///< instants of proved edges that were tested
+  std::map<std::string, long> reasons;  ///< of the undecided ones
+};
+
+struct CampaignOptions {
+  int samples = 50;  ///< of each proved edge
+  int precise_bits = 128;
+};
+
+/** Audits the case that a generator with this seed makes and judges the answer:
+ - against the truth known from the making;
+ - where proved: the checker accepts the proof in numbers of `precise_bits` as well, and no sampled
+   instant is refuted by the ladder of verify/sample_ladder.h, or by exact twins at exactly that s;
+ - where refuted: the exact twins do not find the instant named to be good.
+ Returns what is wrong, or an empty string. */
+std::string JudgeEdge(const EdgeKind& kind, std::uint64_t seed, const CampaignOptions& options,
+                      EdgeTally* tally);
+
+}  // namespace cguide::fuzz
