@@ -141,7 +141,7 @@ Verdict ShapeApart(const Robot& robot, const Edge& edge, const Rational& s, int 
 void Support(const Pose& root, Model* model) {
   model->require = GuideRequirement::kContact;
   model->objects.push_back(test::OneObject("support", Halfspace{{-1, 0, 0}, -8.02}, root));
-  model->sites.push_back({0, {8, 0, 0}, 0});
+  model->sites.push_back({0, {8, 0, 8}, 0});
   model->contact.bodies = {0};
 }
 
