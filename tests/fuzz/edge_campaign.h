@@ -28,8 +28,8 @@ struct CampaignOptions {
  - against the truth known from the making;
  - where proved: the checker accepts the proof in numbers of `precise_bits` as well, and no sampled
    instant is refuted by the ladder of verify/sample_ladder.h, or by exact twins at exactly that s;
- - where refuted: the exact twins do not find the instant named to be good.
- Returns what is wrong, or an empty string. */
+ - where refuted and the truth is not known: the exact twins do not find the instant named to be
+ good. Returns what is wrong, or an empty string. */
 std::string JudgeEdge(const EdgeKind& kind, std::uint64_t seed, const CampaignOptions& options,
                       EdgeTally* tally);
 

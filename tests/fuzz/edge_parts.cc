@@ -129,10 +129,10 @@ Verdict ShapeApart(const Robot& robot, const Edge& edge, const Rational& s, int 
                    const Object& object) {
   const LinkShape& given = robot.links[link].shapes[shape];
   const exact::PreparedModel prepared =
-      exact::PrepareModel(test::OneBodyModel({{{}, given.geometry}}, {object}));
-  const exact::RobotPlacement placement = exact::PlaceRobot(robot, edge, s, 256);
+      exact::PrepareModel(test::OneBodyModel({}, {object}), {.cylinder_sides = 16});
+  const exact::RobotPlacement placement = exact::PlaceRobot(robot, edge, s, 128);
   const exact::ConvexBracket moved = exact::Moved(
-      exact::Moved(exact::Bracket(given.geometry, 64), exact::ExactPlacement(given.X_LS)),
+      exact::Moved(exact::Bracket(given.geometry, 16), exact::ExactPlacement(given.X_LS)),
       placement.links[link]);
   const exact::ConvexBracket body[] = {moved};
   return exact::Separate(body, std::span<const exact::ExactPiece>(prepared.objects[0]), 0).verdict;

@@ -56,7 +56,7 @@ Edge JointEdge(const Pose& root, const std::vector<double>& from, const std::vec
 int CompareSum(const std::vector<double>& terms, const Rational& squared);
 
 /** Whether a link's shape provably meets (kFails) an object at s of the edge, or provably does not
- (kHolds), by the exact twin on a placement of 256 bits. */
+ (kHolds), by the exact twin on a placement of 128 bits. */
 Verdict ShapeApart(const Robot& robot, const Edge& edge, const Rational& s, int link, int shape,
                    const Object& object);
 
