@@ -99,12 +99,13 @@ std::string Judge::Run(TieRng& rng) {
     return answer == Verdict::kHolds ? "an edge that leaves C_guide is proved"
                                      : "an edge that stays in C_guide is refuted";
   }
-  if (answer == Verdict::kHolds) return TestProved(finding, rng);
-  return case_.truth == Verdict::kUndecided ? TestRefuted(finding) : "";
+  if (case_.truth != Verdict::kUndecided && Below(rng, options_.share) != 0) return "";
+  return answer == Verdict::kHolds ? TestProved(finding, rng) : TestRefuted(finding);
 }
 
 std::string Judge::TestProved(const EdgeFinding& finding, TieRng& rng) {
   if (!finding.proof) return "a proved edge has no proof";
+  ++tally_.precise;
   check::Checker precise(world_.model(), {options_.precise_bits});
   const std::string refusal = precise.CheckEdge(case_.edge, *finding.proof);
   if (!refusal.empty()) return "a proof is refused at higher precision: " + refusal;

@@ -15,6 +15,7 @@ struct EdgeTally {
   long proved = 0, refuted = 0, undecided = 0;
   long kept = 0, violated = 0;  ///< truth from the making
   long wrong = 0;
+  long precise = 0;                     ///< proofs that were also checked at higher precision
   long samples = 0;                     ///< instants of proved edges that were tested
   std::map<std::string, long> reasons;  ///< of the undecided ones
 };
@@ -22,6 +23,8 @@ struct EdgeTally {
 struct CampaignOptions {
   int samples = 50;  ///< of each proved edge
   int precise_bits = 128;
+  /** Of proved edges whose truth is known one in so many gets the second check and the samples. */
+  int share = 8;
 };
 
 /** Audits the case that a generator with this seed makes and judges the answer:

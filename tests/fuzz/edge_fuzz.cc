@@ -46,9 +46,10 @@ bool Run(const EdgeKind& kind, const Arguments& arguments) {
   }
   std::printf(
       "%s: %ld edges (%ld kept, %ld violated by making), %ld wrong; %ld proved, %ld refuted, %ld "
-      "undecided (%.2f %%); %ld instants of proved ones tested; %.0f s\n",
+      "undecided (%.2f %%); %ld proofs checked at %d bits, %ld instants of them tested; %.0f s\n",
       kind.name, tally.cases, tally.kept, tally.violated, tally.wrong, tally.proved, tally.refuted,
-      tally.undecided, Percent(tally.undecided, tally.cases), tally.samples, SecondsSince(start));
+      tally.undecided, Percent(tally.undecided, tally.cases), tally.precise,
+      arguments.options.precise_bits, tally.samples, SecondsSince(start));
   for (const auto& [reason, times] : tally.reasons) {
     std::printf("  undecided %ld times: %s\n", times, reason.c_str());
   }
