@@ -117,6 +117,25 @@ PieceShape SomePiece(TieRng& rng) {
   }
 }
 
+/** Takes away the obstacles and self pairs that meet at q. */
+void ClearAt(const Configuration& q, Model* model) {
+  const numeric::World world(*model);
+  numeric::Workspace workspace(world);
+  numeric::Place(world, q, &workspace);
+  std::vector<Object> objects;
+  std::vector<bool> meets(model->objects.size());
+  model->self_pairs.clear();
+  for (const numeric::Pair& pair : numeric::AllPairs(world)) {
+    const bool apart = numeric::PairClearance(world, pair, 1e-6, &workspace).lo > 0;
+    if (pair.self && apart) model->self_pairs.emplace_back(pair.body, pair.other);
+    if (!pair.self && !apart) meets[pair.other] = true;
+  }
+  for (std::size_t i = 0; i < meets.size(); ++i) {
+    if (!meets[i]) objects.push_back(model->objects[i]);
+  }
+  model->objects = std::move(objects);
+}
+
 }  // namespace
 
 // The root's site is within the band of the floor where the edge begins or nearly so.
@@ -150,6 +169,12 @@ std::optional<EdgeCase> MakeRobots(TieRng& rng) {
   // The wall reaches into the root's shape otherwise; only its site is near it.
   model.robot.links[0].shapes[0].geometry = Sphere{0.005};
   model.robot.links[0].shapes[0].X_LS = {};
+  for (std::size_t l = 1; l < model.robot.links.size(); ++l) {
+    LinkShape& shape = model.robot.links[l].shapes[0];
+    if (model.robot.links[l].body == 0) shape = model.robot.links[0].shapes[0];
+  }
+  ClearAt(q, &model);
+  if (model.objects.empty() || model.objects.back().name != "wall") return std::nullopt;
   return result;
 }
 
