@@ -50,8 +50,8 @@ std::string FirstPiece(const Model& model) {
 
 class Judge {
  public:
-  Judge(const EdgeCase& given, const CampaignOptions& options, EdgeTally* tally)
-      : case_(given), options_(options), tally_(*tally), world_(given.model) {}
+  Judge(const EdgeCase& given, std::uint64_t seed, const CampaignOptions& options, EdgeTally* tally)
+      : case_(given), seed_(seed), options_(options), tally_(*tally), world_(given.model) {}
 
   std::string Run(TieRng& rng);
 
@@ -62,6 +62,7 @@ class Judge {
   std::string TestRefuted(const EdgeFinding& finding);
 
   const EdgeCase& case_;
+  std::uint64_t seed_;
   const CampaignOptions& options_;
   EdgeTally& tally_;
   World world_;
@@ -75,11 +76,14 @@ Verdict Judge::Answer(const EdgeFinding& finding) const {
   return VerdictOf(finding);
 }
 
-// Without the places that refusals name, which differ from edge to edge.
+// Refusals name links and places, which differ from edge to edge.
 std::string ReasonOf(const EdgeFinding& finding) {
   if (finding.collision.verdict != Verdict::kHolds) return "collision";
   if (finding.refusal.empty()) return finding.stability.reason;
-  return "refused: " + finding.refusal.substr(0, finding.refusal.find(':'));
+  for (const char* what : {"keep apart", "outside the solid", "forces carry", "keeps contact"}) {
+    if (finding.refusal.find(what) != std::string::npos) return "refused: " + std::string(what);
+  }
+  return "refused: " + finding.refusal;
 }
 
 std::string Judge::Run(TieRng& rng) {
@@ -91,7 +95,8 @@ std::string Judge::Run(TieRng& rng) {
   tally_.violated += case_.truth == Verdict::kFails;
   if (answer == Verdict::kUndecided) {
     ++tally_.undecided;
-    ++tally_.reasons[ReasonOf(finding) + " (" + FirstPiece(case_.model) + ")"];
+    ++tally_.reasons.try_emplace(ReasonOf(finding) + " (" + FirstPiece(case_.model) + ")", 0, seed_)
+          .first->second.first;
     return "";
   }
   ++(answer == Verdict::kHolds ? tally_.proved : tally_.refuted);
@@ -162,7 +167,7 @@ std::string JudgeEdge(const EdgeKind& kind, std::uint64_t seed, const CampaignOp
     ++tally->unmade;
     return "";
   }
-  std::string wrong = Judge(*made, options, tally).Run(rng);
+  std::string wrong = Judge(*made, seed, options, tally).Run(rng);
   tally->wrong += !wrong.empty();
   return wrong;
 }

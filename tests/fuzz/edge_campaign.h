@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "tests/fuzz/edge_cases.h"
 
@@ -15,9 +16,10 @@ struct EdgeTally {
   long proved = 0, refuted = 0, undecided = 0;
   long kept = 0, violated = 0;  ///< truth from the making
   long wrong = 0;
-  long precise = 0;                     ///< proofs that were also checked at higher precision
-  long samples = 0;                     ///< instants of proved edges that were tested
-  std::map<std::string, long> reasons;  ///< of the undecided ones
+  long precise = 0;  ///< proofs that were also checked at higher precision
+  long samples = 0;  ///< instants of proved edges that were tested
+  /** Of the undecided ones: how often, and the seed of the first. */
+  std::map<std::string, std::pair<long, std::uint64_t>> reasons;
 };
 
 struct CampaignOptions {

@@ -50,8 +50,9 @@ bool Run(const EdgeKind& kind, const Arguments& arguments) {
       kind.name, tally.cases, tally.kept, tally.violated, tally.wrong, tally.proved, tally.refuted,
       tally.undecided, Percent(tally.undecided, tally.cases), tally.precise,
       arguments.options.precise_bits, tally.samples, SecondsSince(start));
-  for (const auto& [reason, times] : tally.reasons) {
-    std::printf("  undecided %ld times: %s\n", times, reason.c_str());
+  for (const auto& [reason, found] : tally.reasons) {
+    std::printf("  undecided %ld times: %s, first with --seed %llu\n", found.first, reason.c_str(),
+                static_cast<unsigned long long>(found.second));
   }
   std::fflush(stdout);
   return tally.wrong == 0;
