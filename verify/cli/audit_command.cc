@@ -69,6 +69,7 @@ int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
                     const numeric::World& world, const verify::AuditSubject& about) {
   ProgressLine progress(arguments.common);
   verify::WholeAuditOptions options;
+  options.threads = ThreadCount(arguments.common);
   options.interrupt = &InterruptFlag();
   options.on_progress = [&](int done, int edges) {
     progress.Show("auditing: edge " + std::to_string(done) + " of " + std::to_string(edges));

@@ -159,12 +159,23 @@ TEST_CASE("Lemma 8: a residual up to the weights times 1 - kappa is repaired, no
   CHECK(!Interior(seventh, Weights({1, 1, 1, 1, 1, 1, 1}), {2.1, 1, 1}));
   CHECK(!Interior(seventh, Weights({1, 1, 1, 1, 1, 1, 1}), {1, -0.1, 1}));
   CHECK(!Interior(seventh, Weights({1, 1, 1, 1, 1, 1e-3, 1}), {1, 1, 1.1}));
+  // |1 - R B| = 0.6 and a residual of 0.6: the bound on the repair is 0.6/0.4, more than the
+  // weights.
+  Wrenches moving = seventh;
+  moving[0][0].c[1] = Interval(0.6);
+  CHECK(!Interior(moving, Weights({1, 1, 1, 1, 1, 1, 1}), {1, 1, 1}));
+  moving[0][0].c[1] = Interval(0.4);
+  CHECK(Interior(moving, Weights({1, 1, 1, 1, 1, 1, 1}), {1, 1, 1}));
 }
 
 TEST_CASE("A negative weight, a weight that turns negative, or a NaN refuses the balance") {
   Wrenches wrenches = Units();
   wrenches.push_back(Constant({0, 0, 0, -1, -1, -1}));
   CHECK(!Interior(wrenches, Weights({1, 1, 1, 1, 1, 1, -1e-9}), {1, 1, 1}));
+  Wrenches eighth = wrenches;
+  eighth.push_back(Constant({1, 0, 0, 0, 0, 0}));
+  CHECK(Interior(eighth, Weights({1, 1, 1, 1, 1, 1, 1, 1e-9}), {1, 1, 1}));
+  CHECK(!Interior(eighth, Weights({1, 1, 1, 1, 1, 1, 1, -1e-9}), {1, 1, 1}));
   CHECK(Interior(wrenches, Weights({1, 1, 1, 1, 1, 1, 1}, 0.1), {1, 1, 1}));
   CHECK(!Interior(wrenches, Weights({1, 1, 1, 1, 1, 1, 1}, 1.1), {1, 1, 1}));
   CHECK(!Interior(wrenches, Weights({1, 1, 1, 1, 1, 1, NAN}), {1, 1, 1}));

@@ -146,16 +146,18 @@ TEST_CASE("Models with more pairs than memory should hold are refused at once") 
 
 TEST_CASE("A tree deeper than spans can be halved exactly ends in a refusal") {
   const Model model = OneSite({OneObject("floor", Halfspace{{0, 0, 1}, 0})});
-  Node node;
-  for (int depth = 0; depth < 90; ++depth) {
-    Node parent;
-    parent.halves = {node, {}};
-    node = parent;
-  }
-  EdgeProof proof;
-  proof.edge = 0;
-  proof.root = node;
-  CHECK_THAT(Refusal(model, Still({0, 0, 0.01}), proof), Catch::Contains("balance is not shown"));
+  const Node leaf = ProofOf({FlatOn(0)}).root;
+  const auto refusal_at = [&](int depth) {
+    EdgeProof proof{0, {}, leaf};
+    for (int i = 0; i < depth; ++i) {
+      Node parent;
+      parent.halves = {proof.root, leaf};
+      proof.root = parent;
+    }
+    return Refusal(model, Still({0, 0, 0.01}), proof);
+  };
+  CHECK(refusal_at(30).empty());
+  CHECK_THAT(refusal_at(60), Catch::Contains("balance is not shown"));
 }
 
 TEST_CASE("Balance shown on one half of an edge alone is refused") {
