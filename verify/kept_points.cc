@@ -151,7 +151,9 @@ bool ContactKeeper::KeepOnRidge(const MovingSite& site, const numeric::Contact& 
   const Vector3d sides = UpperOf(across).cwiseMax(-LowerOf(across));
   const double least = LowerBound(straight) - slack;
   const double bend = sides.norm() * kUp + slack;
-  const double farthest = (UpperBound(straight) + bend + slack) * kUp - s.radius;
+  // |w|^2 = straight^2 + |across|^2 but for the rounding of |n_W|, at most 4 u |w|, in the slack.
+  const double most = (std::hypot(UpperBound(straight), bend) + 2 * slack) * kUp;
+  const double farthest = most - s.radius;
   if (!(least > 0 && least - s.radius > site.radius)) return false;
   if (!(farthest < site.radius + rules.epsilon)) return false;
   kept->normal_error = bend / least * kUp + 64 * kUnit;
