@@ -22,17 +22,30 @@ using Basis = std::array<std::int32_t, 5>;
 
 inline double Largest(const Vector6d& y) { return y.cwiseAbs().maxCoeff(); }
 
+/** The vector of fraction[k] 2^exponent[k], made a unit one; not zero. */
+inline Vector6d Unit(const double* fraction, const int* exponent) {
+  int top = std::numeric_limits<int>::min();
+  for (int k = 0; k < 6; ++k) {
+    if (fraction[k] != 0) top = std::max(top, exponent[k] + std::ilogb(fraction[k]));
+  }
+  Vector6d y;
+  for (int k = 0; k < 6; ++k) {
+    y[k] = fraction[k] == 0 ? 0 : std::ldexp(fraction[k], exponent[k] - top);
+  }
+  return y.normalized();
+}
+
 /** The run over integers of E words an entry; n generators, rows n .. of unit vectors behind them.
 
  Why it is the exact algorithm: by induction every ray has five rows that are exactly independent
  and hold it, and its set of planes is exactly those added so far that hold it. The side of a new
  plane is the sign of the determinant of those rows and the new one, times the ray's orientation;
- it is taken from doubles only beyond determinant_error, otherwise from integers that cannot
- overflow. PolarGraph then does what the double description method does, and a ray born of p and q
- lies in the planes common to both (rank 4, as they are adjacent) and in the new one: five
- independent rows are found among those, exactly independent because their normal is not zero; the
- ray is the multiple of that normal which is negative on a plane that holds q but not p (where p is
- negative and q zero) or the reverse. */
+ it is taken from doubles only beyond determinant_error, otherwise as in
+ certified_sides_internal.h. PolarGraph then does what the double description method does, and a ray
+ born of p and q lies in the planes common to both (rank 4, as they are adjacent) and in the new
+ one: five independent rows are found among those, exactly independent because their normal is not
+ zero; the ray is the multiple of that normal which is negative on a plane that holds q but not p
+ (where p is negative and q zero) or the reverse. */
 template <int E>
 class CertifiedRun {
  public:
@@ -43,12 +56,17 @@ class CertifiedRun {
         n_(n),
         rank_(rank),
         tolerance_(impl->rows.determinant_error),
-        counters_(*counters) {}
+        counters_(*counters) {
+    w_.fixed_rows.clear();
+  }
 
   /** Whether these rows (six) are independent, exactly. */
   bool Independent(const std::array<int, 6>& rows) {
     const Basis five{rows[0], rows[1], rows[2], rows[3], rows[4]};
     if (std::abs(FloatNormal(five).dot(w_.rows.rows[rows[5]])) > tolerance_) return true;
+    std::array<Fixed, 6> z;
+    FixedNormal(five, &z);
+    if (FixedSign(z, rows[5]) != 0) return true;
     Wide<5 * E> y[6];
     ExactNormal(five, y);
     return ExactProduct(y, rows[5]).Sign() != 0;
@@ -95,11 +113,30 @@ class CertifiedRun {
     for (int k = 1; k < 6; ++k) sum += y[k] * Row(i)[k];
     return sum;
   }
-  const Wide<5 * E>* StoredNormal(int slot);
-  int ExactSide(int slot, int i) {
-    ++counters_.exact_sides;
-    return w_.rays.orientation[slot] * ExactProduct(StoredNormal(slot), i).Sign();
+  const Fixed* FixedRow(int i) {
+    if (w_.fixed_rows.empty()) FillFixedRows();
+    return w_.fixed_rows[i].data();
   }
+  void FillFixedRows();
+  void FixedNormal(const Basis& b, std::array<Fixed, 6>* y) {
+    NormalOfRows<Fixed, Fixed, Fixed>(FixedRow(b[0]), FixedRow(b[1]), FixedRow(b[2]),
+                                      FixedRow(b[3]), FixedRow(b[4]), y->data());
+  }
+  // Zero where it is not certain.
+  int FixedSign(const std::array<Fixed, 6>& y, int i) {
+    const Fixed* const row = FixedRow(i);
+    Fixed sum = y[0] * row[0];
+    for (int k = 1; k < 6; ++k) sum += y[k] * row[k];
+    return sum.v > kFixedDeterminantError ? 1 : sum.v < -kFixedDeterminantError ? -1 : 0;
+  }
+  const std::array<Fixed, 6>& StoredFixed(int slot);
+  const Wide<5 * E>* StoredNormal(int slot);
+  bool HoldsThree(int begin, int end, int slot, int* first, int* last) const;
+  bool HoldsPointOf(int i, int slot) const;
+  bool HoldsForceOf(int i, int slot) const;
+  bool HoldsForceAbout(int i, int slot) const;
+  int ExactSide(int slot, int i);
+  int WideSide(int slot, int i);
   void Store(int slot, const Basis& basis, const Vector6d& y, int inside);
   bool TryBasis(const Basis& basis, Vector6d* y) const;
   Basis FindBasis(int p, int q, int i, Vector6d* y);
@@ -114,19 +151,6 @@ class CertifiedRun {
   CertifiedDual::Counters& counters_;
 };
 
-template <int E>
-const Wide<5 * E>* CertifiedRun<E>::StoredNormal(int slot) {
-  static_assert(sizeof(Wide<5 * E>[6]) == kWords * sizeof(std::uint64_t));
-  auto* const stored = reinterpret_cast<Wide<5 * E>*>(w_.rays.exact.data() +
-                                                      static_cast<std::size_t>(slot) * kWords);
-  if (!w_.rays.has_exact[slot]) {
-    ++counters_.exact_normals;
-    w_.rays.has_exact[slot] = 1;
-    ExactNormal(w_.rays.basis[slot], stored);
-  }
-  return stored;
-}
-
 /** `inside`: a row on whose negative side the ray lies strictly. */
 template <int E>
 void CertifiedRun<E>::Store(int slot, const Basis& basis, const Vector6d& y, int inside) {
@@ -136,15 +160,18 @@ void CertifiedRun<E>::Store(int slot, const Basis& basis, const Vector6d& y, int
     const std::size_t size = 2 * needed + 64;
     rays.basis.resize(size);
     rays.orientation.resize(size);
+    rays.has_fixed.resize(size);
     rays.has_exact.resize(size);
+    rays.fixed.resize(size);
     rays.exact.resize(size * kWords);
   }
   ++counters_.rays;
   rays.basis[slot] = basis;
   rays.orientation[slot] = 1;
+  rays.has_fixed[slot] = 0;
   rays.has_exact[slot] = 0;
   const double value = y.dot(w_.rows.rows[inside]);
-  const int side = value > tolerance_ ? 1 : value < -tolerance_ ? -1 : ExactSide(slot, inside);
+  const int side = value > tolerance_ ? 1 : value < -tolerance_ ? -1 : WideSide(slot, inside);
   assert(side != 0);
   if (side > 0) rays.orientation[slot] = -1;
   w_.table.Grow(w_.graph.num_slots());
@@ -301,26 +328,31 @@ void CertifiedRun<E>::Add(int i) {
   for (const int s : outside) w_.table.Set(s, Vector6d::Zero());
 }
 
-/** Unit normal in the space of the generators; from integers where the doubles are weak. */
+/** Unit normal in the space of the generators; from wider numbers where the doubles are weak. */
 template <int E>
 Vector6d CertifiedRun<E>::Normal(int slot) {
-  Vector6d y = w_.table.Get(slot);
+  const Vector6d y = w_.table.Get(slot);
   if (Largest(y) > 1e7 * tolerance_) return w_.rows.Unscaled(y).normalized();
-  const Wide<5 * E>* const exact = StoredNormal(slot);
-  mpz_class integer[6];
-  int exponent[6], top = std::numeric_limits<int>::min();
+  const double orientation = w_.rays.orientation[slot];
   double fraction[6];
+  int exponent[6], top = std::numeric_limits<int>::min(), last = top;
   for (int k = 0; k < 6; ++k) {
-    integer[k] = ToInteger(exact[k]);
+    fraction[k] = orientation * static_cast<double>(StoredFixed(slot)[k].v);
+    exponent[k] = kFixedBits - w_.rows.bits[k] - w_.rows.low[k];
+    last = std::max(last, exponent[k]);
+    if (fraction[k] != 0) top = std::max(top, exponent[k] + std::ilogb(fraction[k]));
+  }
+  // Each is within 29 < 2^5 of the exact one (fixed_point_internal.h), rounded: 2^-24 of the
+  // largest.
+  if (top != std::numeric_limits<int>::min() && top - last > 29) return Unit(fraction, exponent);
+  const Wide<5 * E>* const exact = StoredNormal(slot);
+  for (int k = 0; k < 6; ++k) {
+    const mpz_class integer = ToInteger(exact[k]);
     long e = 0;
-    fraction[k] = w_.rays.orientation[slot] * mpz_get_d_2exp(&e, integer[k].get_mpz_t());
+    fraction[k] = orientation * mpz_get_d_2exp(&e, integer.get_mpz_t());
     exponent[k] = static_cast<int>(e) - w_.rows.low[k];
-    if (fraction[k] != 0) top = std::max(top, exponent[k]);
   }
-  for (int k = 0; k < 6; ++k) {
-    y[k] = fraction[k] == 0 ? 0 : std::ldexp(fraction[k], exponent[k] - top);
-  }
-  return y.normalized();
+  return Unit(fraction, exponent);
 }
 
 }  // namespace cguide::numeric

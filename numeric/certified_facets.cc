@@ -9,6 +9,7 @@
 
 #include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/certified_algorithm_internal.h"
+#include "cguide/numeric/certified_sides_internal.h"
 #include "cguide/numeric/fp_guard.h"
 
 namespace cguide::numeric {
@@ -84,12 +85,38 @@ std::vector<int> PivotBasis(const GeneratorRows& rows) {
   return basis;
 }
 
+void FillSamePoint(std::span<const AppliedForce> generators, Impl* impl) {
+  const int n = static_cast<int>(generators.size());
+  impl->same_point.resize(n);
+  impl->points.clear();
+  impl->forces.clear();
+  for (const AppliedForce& g : generators) {
+    impl->points.push_back(g.p);
+    impl->forces.push_back(g.u);
+  }
+  for (int begin = 0, end; begin < n; begin = end) {
+    end = begin + 1;
+    while (end < n && generators[end].p == generators[begin].p) ++end;
+    for (int i = begin; i < end; ++i) impl->same_point[i] = {begin, end};
+  }
+}
+
+void FillSamePoint(std::span<const Vector6d> generators, Impl* impl) {
+  impl->same_point.clear();
+  impl->points.clear();
+  impl->forces.clear();
+  for (int i = 0; i < static_cast<int>(generators.size()); ++i) {
+    impl->same_point.push_back({i, i + 1});
+  }
+}
+
 template <int E, typename Generator>
 void RunWith(std::span<const Generator> generators, Impl* impl, CertifiedDual* result) {
   const int n = static_cast<int>(generators.size());
   GeneratorRows& rows = impl->rows;
   std::vector<Wide<E>> integers;
   FillIntegers(generators, rows, &integers);
+  FillSamePoint(generators, impl);
   std::vector<int> basis = PivotBasis(rows);
   bool full = false;
   if (basis.size() == 6) {

@@ -39,6 +39,7 @@ struct CertifiedDual {
   /** How the sides of rays and planes were decided: counters of this run. */
   struct Counters {
     std::int64_t rays = 0;           ///< born in the run
+    std::int64_t fixed_normals = 0;  ///< of them, computed in fixed point of 128 bits
     std::int64_t exact_normals = 0;  ///< of them, computed in integers
     std::int64_t exact_sides = 0;    ///< sides that doubles left open
     bool reference = false;          ///< numbers too wide: the list is exact::FacetsOf's
@@ -68,8 +69,10 @@ class CertifiedDualWorkspace {
  The double description method of DualDescription, with every decision of the run proved, so that
  the run is that of exact arithmetic. A decision is the sign of a 6 x 6 determinant of generators:
  the ray in the planes of five of them against a sixth. Doubles decide where the determinant exceeds
- its error bound; integers of fixed width decide the others, ties among them. Coordinates so far
- apart that the integers do not fit (over 1500 bits) are left to exact::FacetsOf.
+ its error bound; points and forces that generators share, fixed point of 128 bits beyond its bound
+ and integers of fixed width decide the others, ties among them. Forces at one point are recognised
+ as such where they are listed side by side. Coordinates so far apart that the integers do not fit
+ (over 1500 bits) are left to exact::FacetsOf.
  @throws Error where a number is not finite or the rounding mode is not to nearest. */
 CertifiedDual CertifiedFacets(std::span<const AppliedForce> generators);
 CertifiedDual CertifiedFacets(std::span<const Vector6d> generators);

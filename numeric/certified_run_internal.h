@@ -7,6 +7,7 @@
 
 #include "cguide/numeric/certified_facets.h"
 #include "cguide/numeric/dual_kernels_internal.h"
+#include "cguide/numeric/fixed_point_internal.h"
 #include "cguide/numeric/generator_rows_internal.h"
 #include "cguide/numeric/polar_graph_internal.h"
 
@@ -17,8 +18,10 @@ namespace cguide::numeric {
 struct CertifiedRays {
   std::vector<std::array<std::int32_t, 5>> basis;
   std::vector<std::int8_t> orientation;  ///< times the normal of the rows of the basis is the ray
+  std::vector<std::int8_t> has_fixed;    ///< its normal in fixed point is stored
   std::vector<std::int8_t> has_exact;    ///< its integer normal is stored
-  std::vector<std::uint64_t> exact;      ///< 30 E words a slot
+  std::vector<std::array<Fixed, 6>> fixed;
+  std::vector<std::uint64_t> exact;  ///< 30 E words a slot
 };
 
 struct CertifiedDualWorkspace::Impl {
@@ -26,6 +29,11 @@ struct CertifiedDualWorkspace::Impl {
   RayTable table;
   CertifiedRays rays;
   GeneratorRows rows;
+  std::vector<std::array<Fixed, 6>> fixed_rows;  // once asked for
+  /** First and one past the last of the generators about each one that are listed side by side and
+   applied at the same point: their moments are one linear map of their forces. */
+  std::vector<std::array<std::int32_t, 2>> same_point;
+  std::vector<Eigen::Vector3d> points, forces;  // where there are such
   std::vector<int> order, common;
 };
 

@@ -177,10 +177,11 @@ void FillScales(std::span<const Generator> generators, GeneratorRows* rows) {
   bool moderate = true;
   for (int k = 0; k < 6; ++k) {
     if (rows->low[k] == std::numeric_limits<int>::max()) {
-      rows->low[k] = 0;  // an empty column
+      rows->low[k] = rows->bits[k] = 0;  // an empty column
       continue;
     }
-    bits = std::max(bits, high[k] - rows->low[k]);
+    rows->bits[k] = high[k] - rows->low[k];
+    bits = std::max(bits, rows->bits[k]);
     moderate = moderate && high[k] < 300 && rows->low[k] > -700;
   }
   rows->words = (bits + 4 + 63) / 64;

@@ -34,6 +34,7 @@ struct GeneratorRows {
   // Integers: row i of the matrix is a_i 2^(-row_exponent[i]), column k of that 2^(-low[k]).
   std::vector<int> row_exponent;
   int low[6] = {};
+  int bits[6] = {};  ///< of column k: every integer is below 2^bits[k] in size
   /** Every integer is below 2^(64 words - 4) in size; 0 where that would need too many. */
   int words = 0;
 

@@ -113,8 +113,8 @@ void Writer::Write(const ContactEvidence& contact) {
     *this << "}";
   }
   if (contact.ridge) {
-    *this << ",\"ridge\":";
-    List(contact.ridge->corners, [this](int i) { *this << i; });
+    *this << ",\"ridge\":{\"corners\":";
+    List(contact.ridge->corners, [this](int i) { *this << i; }) << "}";
   }
   if (!contact.apart.empty()) {
     *this << ",\"apart\":";

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cguide/exact/core/path.h"
 #include "cguide/numeric/sampled_edge.h"
@@ -10,6 +11,7 @@
 #include "cguide/verify/check/check.h"
 #include "cguide/verify/edge_collision.h"
 #include "cguide/verify/edge_stability.h"
+#include "cguide/verify/sampled_audit.h"
 
 namespace cguide::verify {
 
@@ -21,6 +23,9 @@ struct EdgeFinding {
   /** Where both hold and the checker (verify/check) accepted the evidence. */
   std::optional<check::EdgeProof> proof;
   std::string refusal;  ///< what the checker did not accept, where both hold
+  /** Of a refuted edge in a whole audit: what samples of it show, in floats for people. A violation
+   between samples leaves it empty. */
+  std::vector<Violation> measured;
 };
 
 /** kHolds only where there is a proof. */

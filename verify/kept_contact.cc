@@ -48,13 +48,6 @@ ExactPlane ExactPlaneOf(const Model& model, const Geometry& g, const Flat& flat,
                         const exact::PreparedModel& prepared) {
   const int object = g.pieces[flat.piece].object;
   const int local = flat.piece - g.object_begin[object];
-  if (flat.triangle >= 0) {
-    const auto& mesh = std::get<exact::ExactMesh>(prepared.objects[object][local]);
-    const exact::Triangle& t = mesh.triangles.triangles[flat.triangle];
-    Vector3q n = exact::Cross(t[1] - t[0], t[2] - t[0]);
-    if (flat.side < 0) n = -n;
-    return {n, exact::Dot(n, t[0])};
-  }
   if (flat.face < 0) {
     const auto& halfspace = std::get<exact::ExactHalfspace>(prepared.objects[object][local]);
     return {halfspace.normal, halfspace.offset};
@@ -65,6 +58,12 @@ ExactPlane ExactPlaneOf(const Model& model, const Geometry& g, const Flat& flat,
   if (flat.face >= 3) n = -n;
   const Rational half = Lift(std::get<Box>(piece.geometry).size[flat.face % 3]) / 2;
   return {n, exact::Dot(n, X.p) + half * exact::SquaredNorm(n)};
+}
+
+ExactPlane PlaneOf(const exact::Triangle& t, int side) {
+  Vector3q n = exact::Cross(t[1] - t[0], t[2] - t[0]);
+  if (side < 0) n = -n;
+  return {n, exact::Dot(n, t[0])};
 }
 
 bool Behind(const ExactPlane& plane, const Vector3q& p) {
@@ -128,7 +127,39 @@ bool FartherThan(const ObstaclePiece& piece, const Vector3d& lower, const Vector
 }
 
 ContactKeeper::ContactKeeper(const numeric::World& world)
-    : world_(world), exact_(exact::PrepareModel(world.model())) {}
+    : world_(world), exact_(exact::PrepareModel(world.model())) {
+  const Geometry& g = world.geometry();
+  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
+    const int object = g.pieces[p].object;
+    const Piece& piece = world.model().objects[object].pieces[p - g.object_begin[object]];
+    const auto* hull = std::get_if<Hull>(&piece.geometry);
+    if (!hull || hull->faces.empty()) continue;
+    HullFaces& faces = hulls_[p];
+    const Convex& s = g.pieces[p].convex;
+    for (int i = 0; i < s.num_points; ++i) faces.mesh.vertices.push_back(s.c + s.points[i]);
+    faces.mesh.triangles = hull->faces;
+    faces.mesh.error = s.error;
+    BuildTree(&faces.mesh);
+    faces.exact =
+        exact::MakeTriangleSet(hull->vertices, hull->faces, exact::ExactPlacement(piece.X_WP));
+  }
+}
+
+const numeric::Mesh* ContactKeeper::FacesOf(int piece) const {
+  const ObstaclePiece& given = world_.geometry().pieces[piece];
+  if (given.kind == PieceKind::kMesh) return given.mesh.get();
+  const auto found = hulls_.find(piece);
+  return found == hulls_.end() ? nullptr : &found->second.mesh;
+}
+
+const exact::Triangle& ContactKeeper::ExactFace(int piece, int triangle) const {
+  const auto found = hulls_.find(piece);
+  if (found != hulls_.end()) return found->second.exact.triangles[triangle];
+  const Geometry& g = world_.geometry();
+  const int object = g.pieces[piece].object;
+  const exact::ExactPiece& mesh = exact_.objects[object][piece - g.object_begin[object]];
+  return std::get<exact::ExactMesh>(mesh).triangles.triangles[triangle];
+}
 
 bool ContactKeeper::FindFlat(const numeric::Contact& contact, Flat* flat) const {
   const Geometry& g = world_.geometry();
@@ -172,9 +203,11 @@ bool ContactKeeper::LiesBehind(const Flat& flat, int piece, int triangle) {
   const Geometry& g = world_.geometry();
   const int object = g.pieces[piece].object;
   const exact::ExactPiece& asked = exact_.objects[object][piece - g.object_begin[object]];
-  const ExactPlane plane = ExactPlaneOf(world_.model(), g, flat, exact_);
+  const ExactPlane plane = flat.triangle < 0
+                               ? ExactPlaneOf(world_.model(), g, flat, exact_)
+                               : PlaneOf(ExactFace(flat.piece, flat.triangle), flat.side);
   if (triangle < 0) return entry->second = Behind(plane, asked);
-  const exact::Triangle& t = std::get<exact::ExactMesh>(asked).triangles.triangles[triangle];
+  const exact::Triangle& t = ExactFace(piece, triangle);
   return entry->second = Behind(plane, t[0]) && Behind(plane, t[1]) && Behind(plane, t[2]);
 }
 
@@ -258,7 +291,9 @@ bool ContactKeeper::Keep(const TaylorState<kDegree>& state, const numeric::Conta
   Flat flat;
   if (FindFlat(contact, &flat) && KeepOnFlat(site, contact, flat, kept)) return true;
   const int piece = FindConvex(contact);
-  if (piece < 0) return KeepOnTriangles(site, contact, kept);
+  const bool is_hull = piece >= 0 && g.pieces[piece].convex.kind == numeric::CoreKind::kPoints;
+  if ((piece < 0 || is_hull) && KeepOnTriangles(site, contact, kept)) return true;
+  if (piece < 0) return false;
   return KeepOnRidge(site, contact, piece, kept) || KeepOnConvex(site, contact, piece, kept);
 }
 

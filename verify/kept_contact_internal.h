@@ -108,6 +108,9 @@ class ContactKeeper {
                      std::vector<int>* triangles);
   bool TrianglesAllow(const Flat& flat, int piece, const Eigen::Vector3d& lower,
                       const Eigen::Vector3d& upper);
+  /** The triangles of a mesh or of a hull's faces, in W; null for other pieces. */
+  const numeric::Mesh* FacesOf(int piece) const;
+  const exact::Triangle& ExactFace(int piece, int triangle) const;
   const MeshEdges& EdgesOf(int piece);
   bool LiesBehind(const Flat& flat, int piece, int triangle);
 
@@ -130,6 +133,12 @@ class ContactKeeper {
   exact::PreparedModel exact_;
   std::map<std::tuple<Flat, int, int>, bool> behind_;  ///< flat, piece, triangle or -1
   std::map<int, MeshEdges> edges_;                     ///< by piece
+  /** Faces of hulls, by piece. */
+  struct HullFaces {
+    numeric::Mesh mesh;
+    exact::TriangleSet exact;
+  };
+  std::map<int, HullFaces> hulls_;
 };
 
 }  // namespace cguide::verify

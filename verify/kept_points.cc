@@ -1,6 +1,8 @@
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "cguide/numeric/gjk_internal.h"
 #include "cguide/verify/kept_contact_internal.h"
 
 // Contacts whose closest point is on a convex piece, not on one of its faces.
@@ -13,9 +15,27 @@ using numeric::Geometry;
 using numeric::ObstaclePiece;
 using numeric::PieceKind;
 
+/** Weights of a hull's vertices that make the point of it nearest to y. */
+std::vector<std::pair<int, double>> WeightsOf(const Convex& s, const Vector3d& y) {
+  Convex point;
+  point.c = y;
+  numeric::GjkResult gjk;
+  numeric::Gjk(s, point, s.c - y, INFINITY, &gjk);
+  Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, 4> A(4, gjk.size);
+  for (int k = 0; k < gjk.size; ++k) A.col(k) << s.c + s.R * s.points[gjk.simplex[k].i], 1;
+  const Eigen::VectorXd weights =
+      A.colPivHouseholderQr().solve(Eigen::Vector4d(y[0], y[1], y[2], 1));
+  std::vector<std::pair<int, double>> result;
+  for (int k = 0; k < gjk.size; ++k) {
+    if (weights[k] > 0) result.emplace_back(gjk.simplex[k].i, weights[k]);
+  }
+  return result;
+}
+
 /** The core's point below y, in the piece's frame. */
 check::NearEvidence NearEvidenceOf(const Convex& s, const numeric::PointProjection& here) {
   const Vector3d core = here.y - s.radius * here.n;
+  if (s.kind == numeric::CoreKind::kPoints) return {Vector3d::Zero(), WeightsOf(s, core)};
   Vector3d y_P = s.R.transpose() * (core - s.c);
   y_P = y_P.cwiseMax(-s.half).cwiseMin(s.half);
   const double across = y_P.head<2>().norm();
@@ -131,7 +151,9 @@ bool ContactKeeper::KeepOnRidge(const MovingSite& site, const numeric::Contact& 
   const Vector3d sides = UpperOf(across).cwiseMax(-LowerOf(across));
   const double least = LowerBound(straight) - slack;
   const double bend = sides.norm() * kUp + slack;
-  const double farthest = (UpperBound(straight) + bend + slack) * kUp - s.radius;
+  // |w|^2 = straight^2 + |across|^2 but for the rounding of |n_W|, at most 4 u |w|, in the slack.
+  const double most = (std::hypot(UpperBound(straight), bend) + 2 * slack) * kUp;
+  const double farthest = most - s.radius;
   if (!(least > 0 && least - s.radius > site.radius)) return false;
   if (!(farthest < site.radius + rules.epsilon)) return false;
   kept->normal_error = bend / least * kUp + 64 * kUnit;

@@ -3,7 +3,7 @@
 
 #include "cguide/verify/kept_contact_internal.h"
 
-// Contacts on the faces of meshes.
+// Contacts on the faces of meshes and hulls.
 namespace cguide::verify {
 namespace {
 
@@ -24,6 +24,12 @@ std::array<int, 3> Oriented(const Mesh& mesh, int triangle, const Vector3d& n) {
   return t;
 }
 
+const std::vector<Vector3d>& VerticesOf(const PieceShape& shape) {
+  if (const auto* solid = std::get_if<Solid>(&shape)) return solid->vertices;
+  if (const auto* hull = std::get_if<Hull>(&shape)) return hull->vertices;
+  return std::get<Surface>(shape).vertices;
+}
+
 bool Contains(const Mesh& mesh, const std::array<int, 3>& t, const Vector3d& n, const Vector3d& y) {
   for (int k = 0; k < 3; ++k) {
     const Vector3d from = mesh.vertices[t[k]], way = mesh.vertices[t[(k + 1) % 3]] - from;
@@ -38,8 +44,8 @@ bool ContactKeeper::FindTriangle(const numeric::Contact& contact, Flat* flat,
                                  TrianglePlane* plane) const {
   const Geometry& g = world_.geometry();
   for (int p = g.object_begin[contact.object]; p < g.object_begin[contact.object + 1]; ++p) {
-    if (g.pieces[p].kind != PieceKind::kMesh) continue;
-    const Mesh& mesh = *g.pieces[p].mesh;
+    if (!FacesOf(p)) continue;
+    const Mesh& mesh = *FacesOf(p);
     const bool none = numeric::VisitNear(mesh, contact.y_W, kNear, [&](int t) {
       const Vector3d a = mesh.corner(t, 1) - mesh.corner(t, 0);
       const Vector3d b = mesh.corner(t, 2) - mesh.corner(t, 0);
@@ -74,14 +80,13 @@ const MeshEdges& ContactKeeper::EdgesOf(int piece) {
   const int object = g.pieces[piece].object;
   const PieceShape& shape =
       world_.model().objects[object].pieces[piece - g.object_begin[object]].geometry;
-  const auto* solid = std::get_if<Solid>(&shape);
-  const auto& vertices = solid ? solid->vertices : std::get<Surface>(shape).vertices;
+  const std::vector<Vector3d>& vertices = VerticesOf(shape);
   std::map<std::array<double, 3>, int> known;
   for (const Vector3d& v : vertices) {
     edges.number.push_back(
         known.try_emplace({v[0], v[1], v[2]}, static_cast<int>(known.size())).first->second);
   }
-  const Mesh& mesh = *g.pieces[piece].mesh;
+  const Mesh& mesh = *FacesOf(piece);
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
     for (int k = 0; k < 3; ++k) {
       const int i = edges.number[mesh.triangles[t][k]];
@@ -96,7 +101,7 @@ const MeshEdges& ContactKeeper::EdgesOf(int piece) {
 bool ContactKeeper::GrowTriangles(const Flat& flat, const TrianglePlane& plane, const Vector2& y,
                                   std::vector<int>* triangles) {
   constexpr std::size_t kMost = 16;
-  const Mesh& mesh = *world_.geometry().pieces[flat.piece].mesh;
+  const Mesh& mesh = *FacesOf(flat.piece);
   const MeshEdges& edges = EdgesOf(flat.piece);
   const Vector3d centroid = (mesh.corner(flat.triangle, 0) + mesh.corner(flat.triangle, 1) +
                              mesh.corner(flat.triangle, 2)) /

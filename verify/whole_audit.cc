@@ -1,6 +1,11 @@
 #include "cguide/verify/whole_audit.h"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
+#include <mutex>
 
 #include "cguide/exact/kinematics.h"
 
@@ -10,6 +15,14 @@ namespace {
 Verdict Worse(Verdict a, Verdict b) {
   if (a == Verdict::kFails || b == Verdict::kFails) return Verdict::kFails;
   return a == Verdict::kHolds ? b : a;
+}
+
+/** How deep and how long a refuted edge leaves C_guide. */
+std::vector<Violation> Measure(const numeric::World& world, const std::vector<std::string>& names,
+                               const Edge& edge, const WholeAuditOptions& options) {
+  SampledAuditOptions sampling;
+  sampling.step = options.measure_step;
+  return AuditSamples(world, {names, {edge.from, edge.to}}, sampling).violations;
 }
 
 }  // namespace
@@ -23,15 +36,29 @@ WholeAudit AuditWhole(const numeric::World& world, const Path& path,
     audit.beyond_limits.push_back(static_cast<int>(i));
     audit.verdict = Verdict::kFails;
   }
-  EdgeAuditor auditor(world);
   const std::vector<Edge> edges = check::EdgesOf(path);
+  const int count = static_cast<int>(edges.size());
   audit.edges.resize(edges.size());
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (options.interrupt && *options.interrupt) return audit;
-    audit.edges[i] = auditor.Audit(static_cast<int>(i), edges[i]);
+  tbb::enumerable_thread_specific<EdgeAuditor> auditors([&] { return EdgeAuditor(world); });
+  std::mutex progress;
+  int finished = 0;
+  const auto audit_edge = [&](int i) {
+    if (options.interrupt && *options.interrupt) return;
+    EdgeFinding& finding = audit.edges[static_cast<std::size_t>(i)];
+    finding = auditors.local().Audit(i, edges[static_cast<std::size_t>(i)]);
+    if (VerdictOf(finding) == Verdict::kFails) {
+      finding.measured =
+          Measure(world, path.joint_names, edges[static_cast<std::size_t>(i)], options);
+    }
+    const std::lock_guard lock(progress);
+    if (options.on_progress) options.on_progress(++finished, count);
+  };
+  tbb::task_arena arena(std::max(1, options.threads));
+  arena.execute([&] { tbb::parallel_for(0, count, audit_edge); });
+  for (const EdgeFinding& finding : audit.edges) {
+    if (!finding.done) continue;
     ++audit.edges_done;
-    audit.verdict = Worse(audit.verdict, VerdictOf(audit.edges[i]));
-    if (options.on_progress) options.on_progress(audit.edges_done, static_cast<int>(edges.size()));
+    audit.verdict = Worse(audit.verdict, VerdictOf(finding));
   }
   return audit;
 }

@@ -10,8 +10,10 @@
 namespace cguide::verify {
 
 struct WholeAuditOptions {
+  int threads = 1;              ///< results do not depend on it
+  double measure_step = 0.005;  ///< of the samples that measure refuted edges
   const std::atomic<bool>* interrupt = nullptr;
-  std::function<void(int done, int edges)> on_progress;
+  std::function<void(int done, int edges)> on_progress;  ///< called from one thread at a time
 };
 
 /** Whether every real configuration of a path, not samples of it, is in C_guide: joint limits

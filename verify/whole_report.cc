@@ -63,6 +63,18 @@ std::string Describe(const Model& model, const EdgeFinding& edge) {
   return "undecided: about s = " + Short(edge.stability.s) + " " + edge.stability.reason;
 }
 
+/** What samples show of a refuted edge. */
+Json Measured(const Model& model, const Violation& v) {
+  Json json;
+  json["s_first"] = v.s_first;
+  json["s_last"] = v.s_last;
+  json["s_worst"] = v.s_worst;
+  json["length"] = v.length;
+  if (v.depth >= 0) json["depth_m"] = v.depth;
+  json["what"] = DescribeViolation(model, v);
+  return json;
+}
+
 }  // namespace
 
 std::string WriteWholeText(const AuditSubject& subject, const Model& model,
@@ -82,6 +94,10 @@ std::string WriteWholeText(const AuditSubject& subject, const Model& model,
   for (std::size_t i = 0; i < audit.edges.size(); ++i) {
     if (!audit.edges[i].done || VerdictOf(audit.edges[i]) == Verdict::kHolds) continue;
     text << "  edge " << i << "  " << Describe(model, audit.edges[i]) << '\n';
+    for (const Violation& v : audit.edges[i].measured) {
+      text << "    s = " << Short(v.s_first) << " .. " << Short(v.s_last) << ", length "
+           << Short(v.length) << ": " << DescribeViolation(model, v) << '\n';
+    }
   }
   if (model.contact.skin > 0) {
     text << "  penetration below the skin of " << numeric::Millimetres(model.contact.skin)
@@ -118,6 +134,7 @@ std::string WriteWholeJson(const AuditSubject& subject, const Model& model,
         entry["s"] =
             edge.collision.verdict != Verdict::kHolds ? edge.collision.s : edge.stability.s;
         entry["why"] = Describe(model, edge);
+        for (const Violation& v : edge.measured) entry["measured"].push_back(Measured(model, v));
       }
     }
     json["edges"].push_back(entry);

@@ -29,6 +29,9 @@ struct Cell {
   std::vector<double> flt, certified, normals, cdd, qhull, ppl;
   std::vector<double> certified_ratio, cdd_ratio, qhull_ratio, ppl_ratio;
   std::vector<double> facets;
+  std::vector<double> float_per_facet, certified_per_facet;  // of lists that are not empty
+  // Only of stances where the other list has the right number of facets.
+  std::vector<double> certified_ratio_right, cdd_ratio_right, cdd_certified_right;
   int float_differs = 0, cdd_differs = 0, cdd_failed = 0, wrong = 0, checked = 0;
 };
 
@@ -85,11 +88,22 @@ void MeasureSet(const WrenchSet& set, bool with_ppl, Cell* cell) {
   cell->float_differs += flt.facets.size() != dual.facets.size();
   const double base = cell->flt.back();
   cell->certified_ratio.push_back(cell->certified.back() / base);
+  if (flt.facets.size() == dual.facets.size()) {
+    cell->certified_ratio_right.push_back(cell->certified_ratio.back());
+  }
+  if (!flt.facets.empty() && !dual.facets.empty()) {
+    cell->float_per_facet.push_back(base / static_cast<double>(flt.facets.size()));
+    cell->certified_per_facet.push_back(cell->certified.back() / cell->facets.back());
+  }
   peers::FacetList cdd;
   const double cdd_time = MicrosecondsOf(1, [&] { cdd = peers::CddFacets(wrenches); });
   if (!cdd.failed) {  // "numerically inconsistent" comes early and is no time for a list
     cell->cdd.push_back(cdd_time);
     cell->cdd_ratio.push_back(cdd_time / base);
+  }
+  if (!cdd.failed && cdd.facets.size() == dual.facets.size()) {
+    cell->cdd_ratio_right.push_back(cdd_time / base);
+    cell->cdd_certified_right.push_back(cdd_time / cell->certified.back());
   }
   cell->cdd_failed += cdd.failed;
   cell->cdd_differs += cdd.failed || cdd.facets.size() != dual.facets.size();
@@ -118,19 +132,97 @@ void PrintRatio(std::FILE* out, const char* name, const std::vector<double>& x) 
                GeometricMean(x), sum / static_cast<double>(x.size()), Least(x), Quantile(x, 1));
 }
 
+/** Over a storage's cells: their medians, and those of the restricted ratios where there are any.
+ */
+struct Totals {
+  std::vector<double> certified, certified_per_facet, cdd, qhull, ppl;
+  std::vector<double> certified_right, cdd_right, cdd_certified_right;
+  int stances = 0, cdd_differs = 0, cdd_failed = 0, float_differs = 0;
+};
+
+void AddMedian(const std::vector<double>& x, std::vector<double>* medians) {
+  if (!x.empty()) medians->push_back(Median(x));
+}
+
+void AddCell(const Cell& cell, Totals* totals) {
+  AddMedian(cell.certified_ratio, &totals->certified);
+  if (!cell.float_per_facet.empty()) {
+    totals->certified_per_facet.push_back(Median(cell.certified_per_facet) /
+                                          Median(cell.float_per_facet));
+  }
+  AddMedian(cell.cdd_ratio, &totals->cdd);
+  AddMedian(cell.qhull_ratio, &totals->qhull);
+  AddMedian(cell.ppl_ratio, &totals->ppl);
+  AddMedian(cell.certified_ratio_right, &totals->certified_right);
+  AddMedian(cell.cdd_ratio_right, &totals->cdd_right);
+  AddMedian(cell.cdd_certified_right, &totals->cdd_certified_right);
+  totals->stances += static_cast<int>(cell.facets.size());
+  totals->cdd_differs += cell.cdd_differs;
+  totals->cdd_failed += cell.cdd_failed;
+  totals->float_differs += cell.float_differs;
+}
+
+// A median in a column of eight, or a dash.
+void PrintMedian(std::FILE* out, const std::vector<double>& x) {
+  if (x.empty()) {
+    std::fprintf(out, " %7s", "-");
+  } else {
+    std::fprintf(out, " %7.2f", Median(x));
+  }
+}
+
+void PrintCell(std::FILE* out, const char* name, int sides, int patches, const Cell& cell) {
+  std::fprintf(out,
+               "%-7s %5d %7d %6.0f | %7.0f %7.0f %7.0f | %9.0f %7.0f %10.0f | %d %d(%d) %d/%d |",
+               name, sides, patches, Median(cell.facets), Median(cell.flt), Median(cell.certified),
+               Median(cell.normals), Median(cell.cdd), Median(cell.qhull), Median(cell.ppl),
+               cell.float_differs, cell.cdd_differs, cell.cdd_failed, cell.wrong, cell.checked);
+  PrintMedian(out, cell.certified_ratio);
+  PrintMedian(out, cell.certified_ratio_right);
+  PrintMedian(out, cell.float_per_facet);
+  PrintMedian(out, cell.certified_per_facet);
+  PrintMedian(out, cell.cdd_ratio);
+  PrintMedian(out, cell.cdd_ratio_right);
+  PrintMedian(out, cell.cdd_certified_right);
+  std::fprintf(out, "\n");
+  std::fflush(out);
+}
+
+void PrintTotals(std::FILE* out, const char* name, const Totals& totals) {
+  std::fprintf(
+      out,
+      "%s, ratios of the cells' medians of ratios (of %d stances the float list differs on "
+      "%d, cdd's on %d, %d of them errors):\n",
+      name, totals.stances, totals.float_differs, totals.cdd_differs, totals.cdd_failed);
+  PrintRatio(out, "certified / float", totals.certified);
+  PrintRatio(out, "  only where float is right", totals.certified_right);
+  PrintRatio(out, "  time a facet of either list", totals.certified_per_facet);
+  PrintRatio(out, "cdd / float", totals.cdd);
+  PrintRatio(out, "  only where cdd is right", totals.cdd_right);
+  PrintRatio(out, "cdd / certified, where cdd is right", totals.cdd_certified_right);
+  PrintRatio(out, "qhull / float", totals.qhull);
+  PrintRatio(out, "ppl / (certified + exact normals)", totals.ppl);
+}
+
 }  // namespace
 
 void ReportDual(std::FILE* out) {
   peers::RestoreRounding();
-  std::fprintf(out,
-               "Facets of wrench cones: medians of thread CPU time (us) over %d stances a cell.\n"
-               "float/cdd differ: stances whose list has another length than the exact one.\n"
-               "%-7s %5s %7s %6s | %7s %7s %7s | %9s %7s %10s | %s\n",
-               kSets, "storage", "sides", "patches", "facets", "float", "certif.", "+normals",
-               "cdd", "qhull", "ppl", "float differs, cdd differs (failed), wrong/checked");
+  std::fprintf(
+      out,
+      "Facets of wrench cones: medians of thread CPU time (us) over %d stances a cell.\n"
+      "float/cdd differ: stances whose list has another length than the exact one; \"right\" is a\n"
+      "list of the exact one's length, and a dash means that no stance of the cell has it.\n"
+      "cdd's times are of the calls that ended without an error, be the list right or not.\n"
+      "%-7s %5s %7s %6s | %7s %7s %7s | %9s %7s %10s | %s | %s\n",
+      kSets, "storage", "sides", "patches", "facets", "float", "certif.", "+normals", "cdd",
+      "qhull", "ppl", "float differs, cdd differs (failed), wrong/checked",
+      "certified/float, where float is right, us a facet: float, certified, cdd/float, where cdd "
+      "is "
+      "right, cdd/certified there");
   for (const Storage storage : {Storage::kSnapped, Storage::kRounded}) {
     const char* const name = storage == Storage::kSnapped ? "snapped" : "rounded";
-    std::vector<double> certified, cdd, qhull, ppl;
+    Totals totals;
     for (const int sides : {4, 8}) {
       for (const int patches : {1, 2, 3, 4, 8}) {
         numeric::Rng rng(1000 + 10 * patches + sides);
@@ -138,23 +230,11 @@ void ReportDual(std::FILE* out) {
         for (int i = 0; i < kSets; ++i) {
           MeasureSet(RandomStanceSet(patches, sides, storage, rng), i < kPplSets, &cell);
         }
-        std::fprintf(
-            out, "%-7s %5d %7d %6.0f | %7.0f %7.0f %7.0f | %9.0f %7.0f %10.0f | %d %d(%d) %d/%d\n",
-            name, sides, patches, Median(cell.facets), Median(cell.flt), Median(cell.certified),
-            Median(cell.normals), Median(cell.cdd), Median(cell.qhull), Median(cell.ppl),
-            cell.float_differs, cell.cdd_differs, cell.cdd_failed, cell.wrong, cell.checked);
-        std::fflush(out);
-        certified.push_back(Median(cell.certified_ratio));
-        if (!cell.cdd_ratio.empty()) cdd.push_back(Median(cell.cdd_ratio));
-        if (!cell.qhull_ratio.empty()) qhull.push_back(Median(cell.qhull_ratio));
-        ppl.push_back(Median(cell.ppl_ratio));
+        PrintCell(out, name, sides, patches, cell);
+        AddCell(cell, &totals);
       }
     }
-    std::fprintf(out, "%s, ratios of the cells' medians of ratios:\n", name);
-    PrintRatio(out, "certified / float", certified);
-    PrintRatio(out, "cdd / float", cdd);
-    PrintRatio(out, "qhull / float", qhull);
-    PrintRatio(out, "ppl / (certified + exact normals)", ppl);
+    PrintTotals(out, name, totals);
   }
 }
 

@@ -9,6 +9,19 @@ namespace {
 
 using Outcome = AuditCheck::Outcome;
 
+TEST_CASE("an edge whose proof the checker refuses is undecided") {
+  WholeAudit audit;
+  audit.edges.resize(1);
+  audit.edges[0].done = true;
+  audit.edges[0].refusal = "balance is not shown";
+  audit.edges_done = 1;
+  const AuditChecks all = ChecksOf(test::HostileModel(), audit);
+  REQUIRE(all.checks.size() == 3);
+  CHECK(all.checks[2].outcome == Outcome::kUndecided);
+  REQUIRE(all.checks[2].witnesses.size() == 1);
+  CHECK(all.checks[2].witnesses[0].what == "the checker refuses the proof: balance is not shown");
+}
+
 TEST_CASE("every edge has three checks, and each says what the audit says") {
   const AuditChecks all = ChecksOf(test::HostileModel(), test::EveryOutcome());
   CHECK(all.edges_tested == "whole");

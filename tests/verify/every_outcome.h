@@ -37,6 +37,7 @@ inline verify::WholeAudit EveryOutcome() {
   audit.edges.resize(5);
   audit.edges_done = 4;
   for (int i = 0; i < 4; ++i) audit.edges[static_cast<std::size_t>(i)].done = true;
+  audit.edges[0].proof.emplace();
   audit.edges[1].collision.verdict = Verdict::kFails;
   audit.edges[1].collision.pair.body = 0;
   audit.edges[1].collision.pair.other = 0;

@@ -82,6 +82,7 @@ TEST_CASE("a complete audit without findings has an empty list of results") {
   WholeAudit audit;
   audit.edges.resize(1);
   audit.edges[0].done = true;
+  audit.edges[0].proof.emplace();
   audit.edges_done = 1;
   const json run =
       json::parse(WriteSarif({"g", "", "", "1"}, ChecksOf(test::HostileModel(), audit)));

@@ -1,10 +1,12 @@
 #include "cguide/verify/whole_audit.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/io/problem_reader.h"
+#include "cguide/verify/certificate_writer.h"
 #include "cguide/verify/whole_report.h"
 
 namespace cguide::verify {
@@ -45,6 +47,44 @@ TEST_CASE("A path is audited edge by edge, for every s, and its report says so")
   CHECK(json["verdict"] == "refuted");
   CHECK(json["edges"].size() == 3);
   CHECK(json["edges"][0]["verdict"] == "proved");
+}
+
+TEST_CASE("Reports and proofs do not depend on the number of threads") {
+  const Room room;
+  std::vector<Configuration> waypoints{room.problem.start};
+  for (int i = 0; i < 8; ++i) {
+    waypoints.push_back(waypoints.back());
+    waypoints.back().joints[i] += i == 5 ? 1.0 : 0.01;
+  }
+  const Path path = room.PathOf(waypoints);
+  std::string reports[2];
+  for (const int k : {0, 1}) {
+    WholeAuditOptions options;
+    options.threads = k == 0 ? 1 : 3;
+    const WholeAudit audit = AuditWhole(room.world, path, options);
+    CHECK(audit.edges_done == 8);
+    reports[k] = WriteWholeText({}, room.problem.model, audit) +
+                 WriteWholeJson({}, room.problem.model, audit);
+    for (const EdgeFinding& edge : audit.edges) {
+      if (edge.proof) reports[k] += WriteProof(*edge.proof);
+    }
+  }
+  CHECK(reports[0] == reports[1]);
+}
+
+TEST_CASE("A refuted edge is measured: depth, length, bodies") {
+  const Room room;
+  Configuration far = room.problem.start;
+  far.X_WB.p.z() -= 0.2;
+  const WholeAudit audit = AuditWhole(room.world, room.PathOf({room.problem.start, far}), {});
+  REQUIRE(!audit.edges[0].measured.empty());
+  const auto deepest =
+      std::max_element(audit.edges[0].measured.begin(), audit.edges[0].measured.end(),
+                       [](const Violation& a, const Violation& b) { return a.depth < b.depth; });
+  CHECK(deepest->depth > 0.03);
+  CHECK(deepest->s_last == 1);
+  const std::string text = WriteWholeText({}, room.problem.model, audit);
+  CHECK(text.find("overlap by about") != std::string::npos);
 }
 
 TEST_CASE("A lone waypoint is an edge from it to itself") {

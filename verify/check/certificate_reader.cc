@@ -78,16 +78,19 @@ NearEvidence ReadNear(const View& view) {
   const View list = view.Get("corners");
   for (std::size_t i = 0; i < list.Size(); ++i) {
     const View corner = list.At(i);
+    if (corner.Size() != 2) corner.Fail("a corner is [index, weight]");
     near.corners.emplace_back(corner.At(0).Index(1'000'000'000), corner.At(1).Number());
   }
   return near;
 }
 
 RidgeEvidence ReadRidge(const View& view) {
+  view.AllowKeys({"corners"});
+  const View list = view.Get("corners");
+  if (list.Size() < 1 || list.Size() > 2) list.Fail("one or two corners are expected here");
   RidgeEvidence ridge;
-  if (view.Size() < 1 || view.Size() > 2) view.Fail("one or two corners are expected here");
-  for (std::size_t i = 0; i < view.Size(); ++i) {
-    ridge.corners.push_back(view.At(i).Index(1'000'000'000));
+  for (std::size_t i = 0; i < list.Size(); ++i) {
+    ridge.corners.push_back(list.At(i).Index(1'000'000'000));
   }
   return ridge;
 }

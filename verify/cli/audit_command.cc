@@ -9,6 +9,7 @@
 #include "cguide/verify/cli/console.h"
 #include "cguide/verify/cli/subject.h"
 #include "cguide/verify/cli/version.h"
+#include "cguide/verify/critical_friction.h"
 #include "cguide/verify/whole_report.h"
 
 namespace cguide::cli {
@@ -68,6 +69,7 @@ int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
                     const numeric::World& world, const verify::AuditSubject& about) {
   ProgressLine progress(arguments.common);
   verify::WholeAuditOptions options;
+  options.threads = ThreadCount(arguments.common);
   options.interrupt = &InterruptFlag();
   options.on_progress = [&](int done, int edges) {
     progress.Show("auditing: edge " + std::to_string(done) + " of " + std::to_string(edges));
@@ -89,17 +91,40 @@ int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
   return ExitCodeOf(audit);
 }
 
+/** A bisection over proofs of the whole path. */
+int FindCritical(const AuditArguments& arguments, const Subject& subject) {
+  ProgressLine progress(arguments.common);
+  verify::CriticalFrictionOptions options;
+  options.interrupt = &InterruptFlag();
+  options.on_progress = [&](double proved, double open) {
+    progress.Show("proved with " + Short(proved) + " of the friction, not with " + Short(open));
+  };
+  const Model& model = subject.problem.model;
+  const verify::CriticalFriction critical =
+      verify::FindCriticalFriction(model, subject.path, options);
+  if (!critical.found) {
+    Deliver(arguments,
+            arguments.path + ": not proved with the friction as given; see cguide audit\n");
+    return kExitUndecided;
+  }
+  std::string text = arguments.path + ": proved with " + Short(critical.proved) +
+                     " of the friction, not with " + Short(critical.open) + "\n";
+  for (const Object& object : model.objects) {
+    text += "  " + object.name + ": mu " + Short(critical.proved * object.friction) +
+            " instead of " + Short(object.friction) + "\n";
+  }
+  Deliver(arguments, text);
+  return InterruptFlag() ? kExitInterrupted : kExitOk;
+}
+
 }  // namespace
 
 int RunAudit(const AuditArguments& arguments) {
   if (!arguments.output.empty()) RequireWritable(arguments.output);
-  if (!arguments.certificate.empty()) {
-    RequireWritable(arguments.certificate);
-    Require(arguments.dense_step == 0,
-            "--certificate needs proofs, which --dense does not look for");
-  }
+  if (!arguments.certificate.empty()) RequireWritable(arguments.certificate);
   const Subject subject =
       ReadSubject(arguments.common, arguments.path, arguments.problem, arguments.reading);
+  if (!arguments.critical.empty()) return FindCritical(arguments, subject);
   const numeric::World world(subject.problem.model);
   const verify::AuditSubject about{arguments.path, subject.problem_file,
                                    subject.problem.model_digest, kVersion};

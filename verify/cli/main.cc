@@ -77,8 +77,13 @@ CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
       ->check(CLI::IsMember({"text", "json", "junit", "sarif"}))
       ->capture_default_str();
   c->add_option("-o,--output", a->output, "Report file; default: stdout");
-  c->add_option("--certificate", a->certificate,
-                "File that takes the proofs, for cguide-check; not with --dense");
+  c->add_option("--certificate", a->certificate, "File that takes the proofs, for cguide-check")
+      ->excludes("--dense");
+  c->add_option("--critical", a->critical,
+                "mu: the smallest share of the friction with which the path is still proved")
+      ->check(CLI::IsMember({"mu"}))
+      ->excludes("--dense")
+      ->excludes("--certificate");
   AddCommon(c, &a->common);
   return c;
 }

@@ -72,6 +72,8 @@ TEST_CASE("Malformed certificates are refused with the place named") {
       {With("\"flat\": {}", "\"flat\": {\"triangles\": [0]}"), "triangles"},
       {With("\"flat\": {}", "\"flat\": {\"face\": 6}"), "face"},
       {With("\"flat\": {}", "\"flat\": {}, \"near\": {}"), "one of"},
+      {With("\"flat\": {}", "\"near\": {\"corners\": [[0, 1, 2]]}"), "[index, weight]"},
+      {With("\"flat\": {}", "\"near\": {\"corners\": [[0, \"1\"]]}"), "a number"},
       {With("\"forces\": []", "\"forces\": [[0, 1, 2]]"), "a force is"},
       {With("\"forces\": []", "\"forces\": [[1, 0, 0, 1, 1, 0]]"), "names nothing"},
       {With("\"edge\": 0", "\"edge\": -1"), "/proofs/0/edge"},

@@ -119,4 +119,16 @@ TEST_CASE("The weights of SLERP hold sin(s phi)/sin(phi) for every phi of the in
   }
 }
 
+TEST_CASE("The weight of SLERP holds all angles of a wide enclosure") {
+  for (const double low : {1e-6, 0.1, 0.5, 1.2}) {
+    const double high = low + 0.3;
+    const Polynomial<Interval> f = SlerpWeight(Interval::Between(low, high), 0.5, 0.0);
+    for (const double phi : {low, low + 0.15, high}) {
+      const double truth = std::sin(0.5 * phi) / std::sin(phi);
+      CHECK(f.c[0].lo() <= truth + 1e-15);
+      CHECK(f.c[0].hi() >= truth - 1e-15);
+    }
+  }
+}
+
 }  // namespace cguide::check

@@ -2,6 +2,7 @@
 #include <cfenv>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/verify/check/checkable.h"
 #include "tests/verify/check/small_models.h"
 
 // False statements with evidence that looks right.
@@ -125,6 +126,58 @@ TEST_CASE("Evidence that names what the model does not have is refused, whoever 
   Edge short_of_joints = edge;
   short_of_joints.to.joints.resize(3);
   CHECK_THROWS_AS(Refusal(model, short_of_joints, ProofOf({FlatOn(0)})), Error);
+}
+
+TEST_CASE("Models with more pairs than memory should hold are refused at once") {
+  const Sphere ball{0.1};
+  const std::vector<LinkShape> shapes(5000, LinkShape{{}, ball});
+  Object many{"many", 0.6, std::vector<Piece>(5000, Piece{{}, ball})};
+  CHECK_THROWS_AS(RequireCheckable(ContactModelOf(shapes, {many}, {})), Error);
+  many.pieces.resize(1000);
+  CHECK_NOTHROW(RequireCheckable(ContactModelOf(shapes, {many}, {})));
+  Model model = ContactModelOf(std::vector<LinkShape>(3, LinkShape{{}, ball}), {}, {});
+  model.robot.links.push_back(model.robot.links[0]);
+  model.robot.joints.push_back(
+      {.name = "j", .type = JointType::kContinuous, .parent = 0, .child = 1});
+  AssignBodiesAndColumns(&model.robot);
+  model.self_pairs.assign(3'000'000, {0, 1});
+  CHECK_THROWS_AS(RequireCheckable(model), Error);
+}
+
+TEST_CASE("A tree deeper than spans can be halved exactly ends in a refusal") {
+  const Model model = OneSite({OneObject("floor", Halfspace{{0, 0, 1}, 0})});
+  const Node leaf = ProofOf({FlatOn(0)}).root;
+  const auto refusal_at = [&](int depth) {
+    EdgeProof proof{0, {}, leaf};
+    for (int i = 0; i < depth; ++i) {
+      Node parent;
+      parent.halves = {proof.root, leaf};
+      proof.root = parent;
+    }
+    return Refusal(model, Still({0, 0, 0.01}), proof);
+  };
+  CHECK(refusal_at(30).empty());
+  CHECK_THAT(refusal_at(60), Catch::Contains("balance is not shown"));
+}
+
+TEST_CASE("Balance shown on one half of an edge alone is refused") {
+  const Model model = OneSite({OneObject("floor", Halfspace{{0, 0, 1}, 0})});
+  const Edge edge = Move({0, 0, 0.01}, {0, 0, 0.02});
+  EdgeProof proof = ProofOf({FlatOn(0)});
+  CHECK(Refusal(model, edge, proof).empty());
+  const Node leaf = proof.root;
+  proof.root = {};
+  proof.root.halves = {leaf, leaf};
+  CHECK(Refusal(model, edge, proof).empty());
+  for (const int missing : {0, 1}) {
+    EdgeProof half = proof;
+    half.root.halves[missing] = {};
+    CHECK(Refusal(model, edge, half) != "");
+  }
+  proof.root.halves.pop_back();
+  CHECK(Refusal(model, edge, proof) != "");
+  proof.root.halves = {leaf, leaf, leaf};
+  CHECK(Refusal(model, edge, proof) != "");
 }
 
 }  // namespace cguide::check

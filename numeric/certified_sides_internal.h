@@ -1,0 +1,179 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "cguide/numeric/certified_algorithm_internal.h"
+
+// Sides that doubles leave open: zeros that forces and points shared by generators bring about,
+// then fixed point of 128 bits beyond its error bound, then integers that cannot overflow.
+namespace cguide::numeric {
+
+// Columns are scaled up to kFixedBits; a unit vector may have any length.
+template <int E>
+void CertifiedRun<E>::FillFixedRows() {
+  const int count = static_cast<int>(integers_.size() / 6);
+  w_.fixed_rows.resize(count);
+  for (int i = 0; i < count; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      const Wide<E>& x = Row(i)[k];
+      w_.fixed_rows[i][k] = i < n_ ? Rescaled(x, kFixedBits - w_.rows.bits[k])
+                                   : Fixed{x.IsZero() ? Int128{0} : Int128{1} << (kFixedBits - 1)};
+    }
+  }
+}
+
+template <int E>
+const std::array<Fixed, 6>& CertifiedRun<E>::StoredFixed(int slot) {
+  std::array<Fixed, 6>& stored = w_.rays.fixed[slot];
+  if (!w_.rays.has_fixed[slot]) {
+    ++counters_.fixed_normals;
+    w_.rays.has_fixed[slot] = 1;
+    FixedNormal(w_.rays.basis[slot], &stored);
+  }
+  return stored;
+}
+
+/** Whether the vectors are independent, for certain. Their entries are at most one in size and came
+ of at most two roundings; then a term of the determinant is rounded at most eight times, of which
+ five by the formula [Higham 2002, lemma 3.1], so that the error is at most
+ 6 * 8 * 2^-53 * 1.01 < 5.4e-15. */
+inline bool IndependentForces(const double* a, const double* b, const double* c) {
+  const double determinant = a[0] * (b[1] * c[2] - b[2] * c[1]) -
+                             a[1] * (b[0] * c[2] - b[2] * c[0]) +
+                             a[2] * (b[0] * c[1] - b[1] * c[0]);
+  return std::abs(determinant) > 1e-14;
+}
+
+/** Whether the points' coordinates a, b are not those of a line, for certain: the determinant is
+ s - t, each of which passes three roundings and their difference one, so that its error is at most
+ 4.2 * 2^-53 (|s| + |t|) < 5e-16 (|s| + |t|), where what underflows is of no concern. */
+inline bool NotOnALine(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
+                       int a, int b) {
+  const double s = (q[a] - p[a]) * (r[b] - p[b]), t = (q[b] - p[b]) * (r[a] - p[a]);
+  const double size = std::abs(s) + std::abs(t);
+  return std::abs(s - t) > 1e-15 * size && size > 1e-200;
+}
+
+/** Whether the ray is certain to be in the planes of all forces at the point of generator `begin`,
+ as it is in those of three that are independent; the ends of those that it holds. */
+template <int E>
+bool CertifiedRun<E>::HoldsThree(int begin, int end, int slot, int* first, int* last) const {
+  *first = begin, *last = end - 1;
+  while (*first < *last && !w_.graph.Holds(*first, slot)) ++*first;
+  while (*first < *last && !w_.graph.Holds(*last, slot)) --*last;
+  const auto& rows = w_.rows.rows;
+  for (int k = *first + 1; k < *last; ++k) {
+    if (w_.graph.Holds(k, slot) &&
+        IndependentForces(rows[*first].data(), rows[k].data(), rows[*last].data())) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/** Whether the ray is certain to be in the planes of all forces at the point of generator i. Where
+ it is in those of two at that point, and of all at another point, the force along the line of the
+ points is a third: it has the same moment at both. */
+template <int E>
+bool CertifiedRun<E>::HoldsPointOf(int i, int slot) const {
+  const auto [begin, end] = w_.same_point[i];
+  if (begin + 1 == end) return false;
+  int first, last;
+  if (HoldsThree(begin, end, slot, &first, &last)) return true;
+  if (first == last) return false;
+  for (int k = 0; k < n_; k = w_.same_point[k][1]) {
+    int a, b;
+    if (k == begin || w_.same_point[k][1] - k < 3) continue;
+    if (!HoldsThree(k, w_.same_point[k][1], slot, &a, &b)) continue;
+    const Eigen::Vector3d line =
+        (w_.points[k] - w_.points[begin]).cwiseProduct(w_.rows.column_scale.head<3>());
+    const double size = line.cwiseAbs().maxCoeff();
+    if (!(size > 1e-200)) continue;  // what underflows is none of the error's concern then
+    const Eigen::Vector3d scaled = line / size;
+    const auto& rows = w_.rows.rows;
+    if (IndependentForces(rows[first].data(), rows[last].data(), scaled.data())) return true;
+  }
+  return false;
+}
+
+/** Whether the ray is certain to be in the plane of generator i because five independent rows that
+ hold it have but two forces u, v, one of them that of i: (u x v, 0) is a normal of the five, hence
+ the ray is along it. (Were u and v parallel, the five would have rank four at most.) */
+template <int E>
+bool CertifiedRun<E>::HoldsForceOf(int i, int slot) const {
+  if (w_.forces.empty()) return false;
+  const Eigen::Vector3d& u = w_.forces[i];
+  int other = -1, same = 0;
+  for (const int row : w_.rays.basis[slot]) {
+    if (row >= n_) return false;
+    if (w_.forces[row] == u) {
+      ++same;
+    } else if (other < 0) {
+      other = row;
+    } else if (w_.forces[row] != w_.forces[other]) {
+      return false;
+    }
+  }
+  return same > 0;
+}
+
+/** Whether the ray is certain to be in the plane of generator i as it is in those of the same force
+ at three points, not on a line, which agree with its point in one coordinate: along the ray the
+ moment of a force is affine in the point. */
+template <int E>
+bool CertifiedRun<E>::HoldsForceAbout(int i, int slot) const {
+  if (w_.forces.empty()) return false;
+  const Eigen::Vector3d &u = w_.forces[i], &p = w_.points[i];
+  for (int k = 0; k < 3; ++k) {
+    int found = 0, first = 0, second = 0;
+    const int a = (k + 1) % 3, b = (k + 2) % 3;
+    for (int j = 0; j < n_; ++j) {
+      if (w_.points[j][k] != p[k] || !w_.graph.Holds(j, slot) || w_.forces[j] != u) continue;
+      if (++found == 1) {
+        first = j;
+      } else if (found == 2) {
+        second = j;
+      } else if (NotOnALine(w_.points[first], w_.points[second], w_.points[j], a, b)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// By what is known of the generators, then by ever wider numbers.
+template <int E>
+int CertifiedRun<E>::ExactSide(int slot, int i) {
+  if (HoldsForceOf(i, slot) || HoldsPointOf(i, slot)) {
+    ++counters_.exact_sides;
+    return 0;
+  }
+  return WideSide(slot, i);
+}
+
+template <int E>
+int CertifiedRun<E>::WideSide(int slot, int i) {
+  ++counters_.exact_sides;
+  int sign = FixedSign(StoredFixed(slot), i);
+  if (sign == 0 && HoldsForceAbout(i, slot)) return 0;
+  if (sign == 0) sign = ExactProduct(StoredNormal(slot), i).Sign();
+  return w_.rays.orientation[slot] * sign;
+}
+
+template <int E>
+const Wide<5 * E>* CertifiedRun<E>::StoredNormal(int slot) {
+  static_assert(sizeof(Wide<5 * E>[6]) == kWords * sizeof(std::uint64_t));
+  auto* const stored = reinterpret_cast<Wide<5 * E>*>(w_.rays.exact.data() +
+                                                      static_cast<std::size_t>(slot) * kWords);
+  if (!w_.rays.has_exact[slot]) {
+    ++counters_.exact_normals;
+    w_.rays.has_exact[slot] = 1;
+    ExactNormal(w_.rays.basis[slot], stored);
+  }
+  return stored;
+}
+
+}  // namespace cguide::numeric

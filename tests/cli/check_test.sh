@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# cguide-check from outside: exit codes, what it says, --model and --precise.
+# usage: check_test.sh PROGRAM FIXTURES
+set -uo pipefail
+program=$1
+certificates=$2/certificates
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+
+fail() {
+  echo "FAILED: $*" >&2
+  failures=$((failures + 1))
+}
+
+# expect CODE ARGUMENTS...: runs the program; its stdout and stderr are kept in $work/out and $work/err.
+expect() {
+  local wanted=$1 code=0
+  shift
+  "$program" "$@" >"$work/out" 2>"$work/err" || code=$?
+  [ "$code" = "$wanted" ] || {
+    fail "exit code $code instead of $wanted: cguide-check $*"
+    sed 's/^/    /' "$work/out" "$work/err" | head -5 >&2
+  }
+}
+
+says() { grep -qF -- "$1" "$work/out" "$work/err" || fail "nothing said of \"$1\""; }
+silent() { [ ! -s "$work/$1" ] || fail "$1 is not empty"; }
+
+# altered FROM TO: block.json with one change, as $work/altered.json.
+altered() {
+  text=$(<"$certificates/block.json")
+  [[ $text == *"$1"* ]] || fail "block.json does not hold $1"
+  printf '%s\n' "${text/"$1"/"$2"}" >"$work/altered.json"
+}
+
+# 2: usage
+expect 2
+says usage
+silent out
+expect 2 "$certificates/block.json" "$certificates/standing.json"
+expect 2 "$certificates/block.json" --fast
+expect 2 "$certificates/block.json" --model
+expect 2 "$certificates/block.json" --precise
+for bits in 52 4097 x 80x -80 ""; do expect 2 "$certificates/block.json" --precise "$bits"; done
+expect 0 --help
+says --precise
+
+# 0: the whole path is proved
+for certificate in block standing kinds; do
+  expect 0 "$certificates/$certificate.json"
+  says "1 of 1 edges proved; the whole path stays in C_guide"
+  silent err
+  for bits in 53 200; do expect 0 "$certificates/$certificate.json" --precise "$bits"; done
+done
+
+# 0 and 1: the model of the certificate, byte for byte
+sed -n '2,/^"path": /p' "$certificates/block.json" | sed '$d' | sed '1s/^"model": //; $s/,$//' >"$work/model.json"
+expect 0 "$certificates/block.json" --model "$work/model.json"
+expect 1 "$certificates/standing.json" --model "$work/model.json"
+says "another model"
+sed 's/0.04/0.040/' "$work/model.json" >"$work/other.json"
+expect 1 "$certificates/block.json" --model "$work/other.json"
+expect 3 "$certificates/block.json" --model "$work/none.json"
+
+# 1: refused, with edge and reason
+altered '[-1, -1, 0]' '[1, -1, 0]'
+expect 1 "$work/altered.json"
+says 'edge 0: that "block" (shape 0) and "post" (piece 1) keep apart is not shown for s in [0.0'
+says "0 of 1 edges proved"
+expect 1 "$work/altered.json" --precise 100
+altered '[0.1, 0.1, 0.11,' '[0.1, 0.1, 0.09,'
+expect 1 "$work/altered.json"
+altered '"edge": 0' '"edge": 1'
+expect 1 "$work/altered.json"
+says "the path has no such edge"
+
+# 3: no certificate
+for text in '' '{' '[]' '{"schema": "cguide-guide/1"}'; do
+  printf '%s' "$text" >"$work/bad.json"
+  expect 3 "$work/bad.json"
+  says "cguide-check: $work/bad.json: "
+  silent out
+done
+expect 3 "$work/none.json"
+expect 3 "$work"
+altered '"site": 0' '"site": 1'
+expect 3 "$work/altered.json"
+says "/proofs/0/tree/balance/contacts/0/site"
+
+# 4: what is there holds, but edges have no proof
+altered '[0.1, 0.1, 0.11, 0, 0, 0, 1]' '[0.1, 0.1, 0.11, 0, 0, 0, 1], [0, 0, 0.11, 0, 0, 0, 1]'
+expect 4 "$work/altered.json"
+says "without proof: edges 1"
+says "1 of 2 edges proved"
+
+[ "$failures" = 0 ]
