@@ -60,6 +60,9 @@ WholeAudit AuditWhole(const numeric::World& world, const Path& path,
     ++audit.edges_done;
     audit.verdict = Worse(audit.verdict, VerdictOf(finding));
   }
+  if (audit.edges_done < count && audit.verdict == Verdict::kHolds) {
+    audit.verdict = Verdict::kUndecided;
+  }
   return audit;
 }
 

@@ -20,6 +20,7 @@ struct WholeAuditOptions {
  (which hold on an edge iff they hold at its ends), collisions, contact and balance. An edge holds
  where the checker has accepted its proof; a refutation rests on doubles with derived bounds. */
 struct WholeAudit {
+  /** kHolds: every edge has a proof. An interrupted audit never holds. */
   Verdict verdict = Verdict::kHolds;
   std::vector<int> beyond_limits;  ///< waypoints
   std::vector<EdgeFinding> edges;  ///< a path of one waypoint has one edge, from it to itself

@@ -111,6 +111,9 @@ TEST_CASE("An interrupted audit says what it did not reach") {
   options.interrupt = &stop;
   const WholeAudit audit = AuditWhole(room.world, room.PathOf({room.problem.start}), options);
   CHECK(audit.edges_done == 0);
+  CHECK(audit.verdict == Verdict::kUndecided);
+  const auto json = nlohmann::json::parse(WriteWholeJson({}, room.problem.model, audit));
+  CHECK(json["verdict"] == "undecided");
   const std::string text = WriteWholeText({}, room.problem.model, audit);
   CHECK(text.find("1 not reached") != std::string::npos);
 }
