@@ -1,6 +1,7 @@
 #include "cguide/verify/certificate_writer.h"
 
 #include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cguide/numeric/io/guide_io.h"
@@ -31,6 +32,7 @@ class Writer {
     return *this;
   }
   Writer& operator<<(double x) {
+    if (x == 0 && std::signbit(x)) return *this << "-0.0";  // "-0" would be read as a whole number
     char buffer[32];
     text_.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, x).ptr);
     return *this;

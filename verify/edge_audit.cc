@@ -41,6 +41,16 @@ EdgeFinding EdgeAuditor::Audit(int index, const Edge& edge) {
   return finding;
 }
 
+EdgeFinding EdgeAuditor::Recheck(const Edge& edge, const check::EdgeProof& known) {
+  if (!state_->checker || !state_->checker->CheckEdge(edge, known).empty()) {
+    return Audit(known.edge, edge);
+  }
+  EdgeFinding finding;
+  finding.done = true;
+  finding.proof = known;
+  return finding;
+}
+
 EdgeFinding EdgeAuditor::State::Audit(int index, const Edge& edge, double widest) {
   EdgeFinding finding;
   EdgeEvidence evidence;

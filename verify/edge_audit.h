@@ -43,6 +43,11 @@ class EdgeAuditor {
   /** `index` is the edge's number in its proof. @throws Error where the edge does not fit. */
   EdgeFinding Audit(int index, const Edge& edge);
 
+  /** The same, from a proof that is already there: nothing is searched where the checker accepts
+   * it.
+   */
+  EdgeFinding Recheck(const Edge& edge, const check::EdgeProof& known);
+
   struct State;
 
  private:

@@ -45,10 +45,13 @@ WholeAudit AuditWhole(const numeric::World& world, const Path& path,
   const auto audit_edge = [&](int i) {
     if (options.interrupt && *options.interrupt) return;
     EdgeFinding& finding = audit.edges[static_cast<std::size_t>(i)];
-    finding = auditors.local().Audit(i, edges[static_cast<std::size_t>(i)]);
+    const Edge& edge = edges[static_cast<std::size_t>(i)];
+    const auto known = std::find_if(options.known.begin(), options.known.end(),
+                                    [i](const check::EdgeProof& p) { return p.edge == i; });
+    finding = known == options.known.end() ? auditors.local().Audit(i, edge)
+                                           : auditors.local().Recheck(edge, *known);
     if (VerdictOf(finding) == Verdict::kFails) {
-      finding.measured =
-          Measure(world, path.joint_names, edges[static_cast<std::size_t>(i)], options);
+      finding.measured = Measure(world, path.joint_names, edge, options);
     }
     const std::lock_guard lock(progress);
     if (options.on_progress) options.on_progress(++finished, count);

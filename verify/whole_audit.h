@@ -10,7 +10,10 @@
 namespace cguide::verify {
 
 struct WholeAuditOptions {
-  int threads = 1;              ///< results do not depend on it
+  int threads = 1;  ///< results do not depend on it
+  /** Proofs of an earlier audit of the same path, which are re-checked instead of being looked for.
+   */
+  std::vector<check::EdgeProof> known;
   double measure_step = 0.005;  ///< of the samples that measure refuted edges
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(int done, int edges)> on_progress;  ///< called from one thread at a time

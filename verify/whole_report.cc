@@ -125,10 +125,8 @@ std::string WriteWholeJson(const AuditSubject& subject, const Model& model,
     if (edge.done) {
       entry["verdict"] = Name(VerdictOf(edge));
       entry["collision"] = Found(edge.collision.verdict);
-      entry["collision_leaves"] = edge.collision.leaves;
       if (edge.collision.verdict != Verdict::kFails) {
         entry["balance"] = Found(edge.stability.verdict);
-        entry["balance_leaves"] = edge.stability.leaves;
       }
       if (VerdictOf(edge) != Verdict::kHolds) {
         entry["s"] =

@@ -76,6 +76,14 @@ section_main_job() {
   says "edges proved for every s"
   cmp -s "$work/planned.cert" "$work/audited.cert" || fail "plan and audit write different certificates"
   expect 2 audit "$work/guide.json" --dense 0.005 --certificate "$work/x.cert"
+  # A partial certificate is completed to the same bytes; one of another path is refused.
+  grep -v '^{"edge":1,' "$work/audited.cert" >"$work/partial.cert"
+  expect 0 audit "$work/guide.json" --certificate "$work/partial.cert" --resume
+  cmp -s "$work/partial.cert" "$work/audited.cert" || fail "a resumed audit writes another certificate"
+  expect 0 plan "$a1" -o "$work/other.json" --seed 4
+  expect 3 audit "$work/other.json" --certificate "$work/audited.cert" --resume
+  says "another model or path"
+  expect 2 audit "$work/guide.json" --resume
   expect 0 stability --guide "$work/guide.json" --at 0.5
   says "statically stable"
   says "support region"

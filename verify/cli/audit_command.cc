@@ -1,4 +1,7 @@
+#include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <sstream>
 
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/io/guide_io.h"
@@ -65,11 +68,29 @@ int AuditSamplesOf(const AuditArguments& arguments, const Subject& subject,
   return ExitCodeOf(audit);
 }
 
+/** The proofs of an earlier, interrupted audit of this path. A certificate of another one is
+ * refused. */
+std::vector<check::EdgeProof> KnownProofs(const AuditArguments& arguments, const Subject& subject) {
+  if (!arguments.resume || !std::filesystem::exists(arguments.certificate)) return {};
+  std::ifstream file(arguments.certificate, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  check::Certificate known = check::ParseCertificate(text.str());
+  if (!(known.model == subject.problem.model) || known.path.waypoints != subject.path.waypoints ||
+      known.path.joint_names != subject.path.joint_names) {
+    throw Error(Error::Code::kBadInput,
+                arguments.certificate +
+                    ": it is about another model or path; remove it or name another file");
+  }
+  return std::move(known.proofs);
+}
+
 int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
                     const numeric::World& world, const verify::AuditSubject& about) {
   ProgressLine progress(arguments.common);
   verify::WholeAuditOptions options;
   options.threads = ThreadCount(arguments.common);
+  options.known = KnownProofs(arguments, subject);
   options.interrupt = &InterruptFlag();
   options.on_progress = [&](int done, int edges) {
     progress.Show("auditing: edge " + std::to_string(done) + " of " + std::to_string(edges));

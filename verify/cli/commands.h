@@ -55,6 +55,7 @@ struct AuditArguments {
   std::string format = "text";  ///< text, json, junit, sarif
   std::string output;           ///< file, or empty for stdout
   std::string certificate;      ///< file that takes the proofs, or empty
+  bool resume = false;          ///< take the proofs that `certificate` has
   std::string critical;         ///< "mu": ask how much friction the path needs
 };
 

@@ -79,6 +79,9 @@ CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
   c->add_option("-o,--output", a->output, "Report file; default: stdout");
   c->add_option("--certificate", a->certificate, "File that takes the proofs, for cguide-check")
       ->excludes("--dense");
+  c->add_flag("--resume", a->resume,
+              "Re-check the proofs that the certificate already has, and look for the others")
+      ->needs("--certificate");
   c->add_option("--critical", a->critical,
                 "mu: the smallest share of the friction with which the path is still proved")
       ->check(CLI::IsMember({"mu"}))
