@@ -52,11 +52,12 @@ constexpr int kFixedDeterminantError = 41;
 template <int N>
 Fixed Rescaled(const Wide<N>& a, int shift) {
   const std::uint64_t sign = a.IsNegative() ? ~std::uint64_t{0} : 0;
-  const auto word = [&](int k) { return k < N ? a.w[k] : sign; };
+  const auto word = [&](unsigned k) { return k < unsigned{N} ? a.w[k] : sign; };
   if (shift >= 0) {
     return {static_cast<Int128>((UInt128{word(1)} << 64 | word(0)) << shift)};
   }
-  const int words = -shift / 64, bits = -shift % 64;
+  const unsigned words = static_cast<unsigned>(-shift) / 64;
+  const int bits = -shift % 64;
   const UInt128 low = UInt128{word(words + 1)} << 64 | word(words);
   const UInt128 high = bits == 0 ? 0 : UInt128{word(words + 2)} << (128 - bits);
   return {static_cast<Int128>(bits == 0 ? low : low >> bits | high)};
