@@ -83,6 +83,9 @@ section_main_job() {
   expect 0 plan "$a1" -o "$work/other.json" --seed 4
   expect 3 audit "$work/other.json" --certificate "$work/audited.cert" --resume
   says "another model or path"
+  head -c 5000 "$work/audited.cert" >"$work/cut.cert"
+  expect 3 audit "$work/guide.json" --certificate "$work/cut.cert" --resume
+  says "cut.cert"
   expect 2 audit "$work/guide.json" --resume
   expect 0 stability --guide "$work/guide.json" --at 0.5
   says "statically stable"

@@ -75,7 +75,12 @@ std::vector<check::EdgeProof> KnownProofs(const AuditArguments& arguments, const
   std::ifstream file(arguments.certificate, std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
-  check::Certificate known = check::ParseCertificate(text.str());
+  check::Certificate known;
+  try {
+    known = check::ParseCertificate(text.str());
+  } catch (const Error& e) {
+    throw Error(e.code(), arguments.certificate + ": " + e.what() + "; remove it to begin anew");
+  }
   if (!(known.model == subject.problem.model) || known.path.waypoints != subject.path.waypoints ||
       known.path.joint_names != subject.path.joint_names) {
     throw Error(Error::Code::kBadInput,
