@@ -53,9 +53,10 @@ Sign CompareWithRoot(const Rational& m, const Rational& s, const Rational& n);
 
  @param squared their squared distance, as SquaredConvexDistance finds it.
  Exact for reach >= 0, for cores apart, and for those that overlap in a common plane or less (0).
- For others that overlap and reach < 0 the facet normals and edge crosses are tried as axes [Gottschalk, Lin, Manocha 1996]; up to 400 of them are tried all,
- and decide. With more of them, those tried may hold and a tetrahedron about the ball of radius
- |reach| in the difference body may fail it; else the answer is kUndecided. */
+ For others that overlap and reach < 0 the facet normals and edge crosses are tried as axes
+ [Gottschalk, Lin, Manocha 1996]; up to 400 of them are tried all, and decide. With more of them,
+ those tried may hold and a tetrahedron about the ball of radius |reach| in the difference body may
+ fail it; else the answer is kUndecided. */
 Verdict ExceedsReach(const Core& a, const Core& b, const Rational& squared, const Rational& reach);
 
 }  // namespace cguide::exact

@@ -286,6 +286,7 @@ bool ContactKeeper::Keep(const TaylorState<kDegree>& state, const numeric::Conta
   site.x.r.head<3>() += 8 * kUnit * body_site->x_B.lpNorm<1>();  // x_B is rounded once
   site.lower = LowerOf(site.x);
   site.upper = UpperOf(site.x);
+  if (!site.lower.allFinite() || !site.upper.allFinite()) return false;  // maxima may drop a NaN
   const Vector3d away = (site.upper - contact.x_W).cwiseMax(contact.x_W - site.lower).cwiseMax(0.0);
   site.step = away.norm() * kUp + 8 * kUnit * contact.x_W.lpNorm<1>();
   Flat flat;

@@ -154,7 +154,7 @@ std::string ConcludeEdges(const PlanArguments& arguments, const World& world, co
         arguments.certificate,
         verify::WriteCertificate(model, path, std::string("cguide ") + kVersion, proofs));
   }
-  return proofs.size() == audit.edges.size() ? "proved"
+  return audit.verdict == Verdict::kHolds ? "proved"
                                              : "proved " + std::to_string(proofs.size()) + " of " +
                                                    std::to_string(audit.edges.size());
 }
