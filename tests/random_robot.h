@@ -62,4 +62,18 @@ inline Configuration RandomConfiguration(std::mt19937_64& rng, const Robot& robo
   return q;
 }
 
+/** An edge whose ends differ by at most `step` in each number; quaternions of either sign, not
+ * unit. */
+inline Edge RandomEdge(std::mt19937_64& rng, const Robot& robot, double step) {
+  Edge edge;
+  edge.from = edge.to = RandomConfiguration(rng, robot);
+  for (double& x : edge.to.joints) x += Between(rng, -step, step);
+  edge.to.X_WB.p += RandomPoint(rng, step);
+  Quaternion& q = edge.to.X_WB.q;
+  const double flip = rng() % 3 == 0 ? -1 : 1;
+  q = {flip * (q.x + Between(rng, -step, step)), flip * (q.y + Between(rng, -step, step)),
+       flip * (q.z + Between(rng, -step, step)), flip * (q.w + Between(rng, -step, step))};
+  return edge;
+}
+
 }  // namespace cguide::test

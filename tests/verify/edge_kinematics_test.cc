@@ -34,18 +34,6 @@ double Share(const TaylorVector<N>& a, const Rational& t, const Vector3q& truth,
   return share;
 }
 
-Edge RandomEdge(Rng& rng, const Robot& robot, double step) {
-  Edge edge;
-  edge.from = edge.to = test::RandomConfiguration(rng, robot);
-  for (double& x : edge.to.joints) x += Between(rng, -step, step);
-  edge.to.X_WB.p += test::RandomPoint(rng, step);
-  Quaternion& q = edge.to.X_WB.q;
-  const double flip = rng() % 3 == 0 ? -1 : 1;
-  q = {flip * (q.x + Between(rng, -step, step)), flip * (q.y + Between(rng, -step, step)),
-       flip * (q.z + Between(rng, -step, step)), flip * (q.w + Between(rng, -step, step))};
-  return edge;
-}
-
 Leaf RandomLeaf(Rng& rng) {
   const int level = static_cast<int>(rng() % 12);
   const double width = std::ldexp(1.0, -level);
@@ -69,7 +57,7 @@ double WorstShare(Rng& rng, int rounds) {
     const Robot robot = round % 2 ? AwkwardRobot(rng) : test::RandomRobot(rng, 12);
     const numeric::KinematicTree tree(robot);
     const double step = std::pow(10, -Between(rng, 0.3, 14));
-    const Edge edge = RandomEdge(rng, robot, round % 7 == 0 ? 0 : step);
+    const Edge edge = test::RandomEdge(rng, robot, round % 7 == 0 ? 0 : step);
     const Leaf leaf = RandomLeaf(rng);
     TaylorState<N> state;
     EvaluateEdge<N>(tree, edge, leaf, &state);
@@ -108,7 +96,7 @@ TEST_CASE("Remainders shrink with the leaf at the order of the model") {
   Rng rng(5);
   const Robot robot = test::RandomRobot(rng, 20);
   const numeric::KinematicTree tree(robot);
-  const Edge edge = RandomEdge(rng, robot, 0.2);
+  const Edge edge = test::RandomEdge(rng, robot, 0.2);
   TaylorState<2> wide, narrow;
   EvaluateEdge<2>(tree, edge, {0.5, 0.5}, &wide);
   EvaluateEdge<2>(tree, edge, {0.5, 0.5 / 64}, &narrow);

@@ -15,18 +15,6 @@ namespace {
 using Rng = std::mt19937_64;
 using test::Between;
 
-Edge RandomEdge(Rng& rng, const Robot& robot, double step) {
-  Edge edge;
-  edge.from = edge.to = test::RandomConfiguration(rng, robot);
-  for (double& x : edge.to.joints) x += Between(rng, -step, step);
-  edge.to.X_WB.p += test::RandomPoint(rng, step);
-  Quaternion& q = edge.to.X_WB.q;
-  const double flip = rng() % 3 == 0 ? -1 : 1;
-  q = {flip * (q.x + Between(rng, -step, step)), flip * (q.y + Between(rng, -step, step)),
-       flip * (q.z + Between(rng, -step, step)), flip * (q.w + Between(rng, -step, step))};
-  return edge;
-}
-
 Span RandomSpan(Rng& rng) {
   const int level = static_cast<int>(rng() % 12);
   const double width = std::ldexp(1.0, -level);
@@ -59,7 +47,7 @@ double CompareWithExact(Rng& rng, int rounds, double largest_step) {
     std::vector<ConstantJoint<I>> joints;
     for (const Joint& joint : robot.joints) joints.push_back(Lifted<I>(joint));
     const double step = largest_step * std::pow(10, -Between(rng, 0, 13));
-    const Edge edge = RandomEdge(rng, robot, round % 7 == 0 ? 0 : step);
+    const Edge edge = test::RandomEdge(rng, robot, round % 7 == 0 ? 0 : step);
     const Span span = RandomSpan(rng);
     std::vector<MovingPose<I>> links;
     PlaceLinks(robot, joints, edge, span, &links);
