@@ -155,8 +155,8 @@ std::string ConcludeEdges(const PlanArguments& arguments, const World& world, co
         verify::WriteCertificate(model, path, std::string("cguide ") + kVersion, proofs));
   }
   return audit.verdict == Verdict::kHolds ? "proved"
-                                             : "proved " + std::to_string(proofs.size()) + " of " +
-                                                   std::to_string(audit.edges.size());
+                                          : "proved " + std::to_string(proofs.size()) + " of " +
+                                                std::to_string(audit.edges.size());
 }
 
 void WriteGuideFile(const PlanArguments& arguments, const Problem& problem, const Plan& plan) {
