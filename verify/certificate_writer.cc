@@ -54,6 +54,7 @@ class Writer {
   void Planes(const std::vector<Plane>& planes);
   void Separations(const char* key, const std::vector<Separation>& list, const char** between);
   void Write(const ContactEvidence& contact);
+  void Write(const std::vector<check::ForceEvidence>& forces);
   void Write(const Balance& balance);
   void Write(const Node& node);
 
@@ -129,14 +130,23 @@ void Writer::Write(const ContactEvidence& contact) {
   *this << "}";
 }
 
-void Writer::Write(const Balance& balance) {
-  *this << "{\"contacts\":";
-  List(balance.contacts, [this](const ContactEvidence& contact) { Write(contact); });
-  *this << ",\"forces\":";
-  List(balance.forces, [this](const check::ForceEvidence& f) {
+void Writer::Write(const std::vector<check::ForceEvidence>& forces) {
+  List(forces, [this](const check::ForceEvidence& f) {
     *this << "[" << f.contact << "," << f.u_W[0] << "," << f.u_W[1] << "," << f.u_W[2] << ","
           << f.w0 << "," << f.w1 << "]";
   });
+}
+
+void Writer::Write(const Balance& balance) {
+  *this << "{\"contacts\":";
+  List(balance.contacts, [this](const ContactEvidence& contact) { Write(contact); });
+  if (balance.displaced.empty()) {
+    *this << ",\"forces\":";
+    Write(balance.forces);
+  } else {
+    *this << ",\"displaced\":";
+    List(balance.displaced, [this](const auto& forces) { Write(forces); });
+  }
   *this << "}";
 }
 
@@ -168,6 +178,13 @@ std::string WriteWaypoint(const Configuration& q) {
   return writer.Take();
 }
 
+std::string WriteRobustness(const check::Robustness& robust) {
+  Writer writer;
+  writer << "{\"friction\":" << robust.friction << ",\"pose\":" << robust.pose
+         << ",\"com\":" << robust.com << "}";
+  return writer.Take();
+}
+
 }  // namespace
 
 std::string WriteProof(const check::EdgeProof& proof) {
@@ -187,7 +204,8 @@ std::string WriteProof(const check::EdgeProof& proof) {
 }
 
 std::string WriteCertificate(const Model& model, const Path& path, const std::string& tool,
-                             const std::vector<const check::EdgeProof*>& proofs) {
+                             const std::vector<const check::EdgeProof*>& proofs,
+                             const check::Robustness& robust) {
   std::string model_text = numeric::io::WriteModel(model);
   while (!model_text.empty() && model_text.back() == '\n') model_text.pop_back();
   std::string text = "{\"schema\": \"cguide-certificate/1\",\n\"model\": " + model_text;
@@ -199,7 +217,9 @@ std::string WriteCertificate(const Model& model, const Path& path, const std::st
   for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
     text += (i ? ",\n" : "\n") + WriteWaypoint(path.waypoints[i]);
   }
-  text += "\n]},\n\"tool\": " + Quoted(tool) + ",\n\"proofs\": [";
+  text += "\n]},\n";
+  if (!(robust == check::Robustness{})) text += "\"robust\": " + WriteRobustness(robust) + ",\n";
+  text += "\"tool\": " + Quoted(tool) + ",\n\"proofs\": [";
   for (std::size_t i = 0; i < proofs.size(); ++i) {
     text += (i ? ",\n" : "\n") + WriteProof(*proofs[i]);
   }

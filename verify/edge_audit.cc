@@ -6,19 +6,23 @@
 namespace cguide::verify {
 
 struct EdgeAuditor::State {
-  explicit State(const numeric::World& given) : world(given), collision(given), stability(given) {
+  State(const numeric::World& given, const check::Robustness& box)
+      : world(given), robust(box), collision(given), stability(given) {
     // Under kNearest nothing continuous holds, and the checker takes no such model.
-    if (given.model().contact.model == ContactModel::kSites) checker.emplace(given.model());
+    if (given.model().contact.model != ContactModel::kSites) return;
+    checker.emplace(given.model(), check::CheckOptions{0, box});
   }
   EdgeFinding Audit(int index, const Edge& edge, double widest);
 
   const numeric::World& world;
+  check::Robustness robust;
   EdgeWorkspace collision;
   StabilityEdgeWorkspace stability;
   std::optional<check::Checker> checker;
 };
 
-EdgeAuditor::EdgeAuditor(const numeric::World& world) : state_(std::make_unique<State>(world)) {}
+EdgeAuditor::EdgeAuditor(const numeric::World& world, const check::Robustness& robust)
+    : state_(std::make_unique<State>(world, robust)) {}
 EdgeAuditor::~EdgeAuditor() = default;
 EdgeAuditor::EdgeAuditor(EdgeAuditor&&) noexcept = default;
 EdgeAuditor& EdgeAuditor::operator=(EdgeAuditor&&) noexcept = default;
@@ -58,6 +62,8 @@ EdgeFinding EdgeAuditor::State::Audit(int index, const Edge& edge, double widest
   EdgeStabilityOptions stability_options;
   collision_options.evidence = stability_options.evidence = &evidence;
   collision_options.widest = stability_options.widest = widest;
+  collision_options.pose = robust.pose;
+  stability_options.robust = robust;
   finding.collision = DecideEdgeCollision(world, edge, collision_options, &collision);
   finding.stability.verdict = Verdict::kUndecided;
   if (finding.collision.verdict != Verdict::kFails) {
@@ -92,6 +98,8 @@ Verdict DecideWhole(const numeric::World& world, const Edge& edge,
   EdgeCollisionOptions collision;
   EdgeStabilityOptions stability;
   collision.max_leaves = stability.max_leaves = options.max_leaves;
+  collision.pose = options.robust.pose;
+  stability.robust = options.robust;
   const Verdict free = DecideEdgeCollision(world, edge, collision, &x->collision).verdict;
   if (free != Verdict::kHolds || options.space == numeric::Space::kFree) return free;
   return DecideEdgeStability(world, edge, stability, &x->stability).verdict;

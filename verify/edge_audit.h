@@ -35,7 +35,8 @@ Verdict VerdictOf(const EdgeFinding& edge);
  must outlive it. */
 class EdgeAuditor {
  public:
-  explicit EdgeAuditor(const numeric::World& world);
+  /** What is proved is proved for every model in the box. */
+  explicit EdgeAuditor(const numeric::World& world, const check::Robustness& robust = {});
   ~EdgeAuditor();
   EdgeAuditor(EdgeAuditor&&) noexcept;
   EdgeAuditor& operator=(EdgeAuditor&&) noexcept;
@@ -60,6 +61,7 @@ struct WholeOracleOptions {
   double step = 0.02;
   /** The planner gives up on an edge sooner than an audit does; undecided counts as no edge. */
   long max_leaves = 200;
+  check::Robustness robust;  ///< the edge must hold for every model in this box
 };
 
 /** An edge oracle that holds only where every real s of the edge is in C_guide (or C_free). It

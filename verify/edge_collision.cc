@@ -144,10 +144,11 @@ const MovingShape& Decider::Shape(int index) {
 }
 
 // Every point of the shape is strictly above the plane n.x = offset - skin for every t, or above it
-// after a translation of skin along n, |n| >= 1 - 8 u.
+// after a translation of skin along n, 1 - 8 u <= |n| <= 1 + 8 u; and so where the plane is moved
+// by `pose`.
 bool Decider::Above(const MovingShape& a, double offset, double skin, const Vector3d& n) {
   ++result_.tests;
-  const double lowest = LowestOver(a, {n, offset, 0});
+  const double lowest = LowestOver(a, {n, offset, 0}) - options_.pose * (1 + 16 * kUnit);
   if (!(lowest > -skin * (1 - 16 * kUnit))) return false;
   ++result_.planes;
   // Half way between the two where rounding allows, so that as much of the obstacle as possible
@@ -211,7 +212,7 @@ bool Decider::HoldsHalfspace(const MovingShape& a, const ObstaclePiece& piece, d
 // that served for another one.
 bool Decider::HoldsMesh(const MovingShape& a, const numeric::Mesh& mesh, double skin) {
   if (mesh.nodes.empty()) return true;
-  const Vector3d margin = Vector3d::Constant(mesh.error);
+  const Vector3d margin = Vector3d::Constant((mesh.error + options_.pose) * kUp);
   std::vector<int> open{0};
   while (!open.empty()) {
     const numeric::MeshNode& node = mesh.nodes[open.back()];
@@ -262,6 +263,10 @@ bool Decider::Holds(Item* item) {
   }
   Vector3d lower, upper;
   StaticBox(piece.convex, &lower, &upper);
+  if (options_.pose > 0) {
+    lower = lower.array() - options_.pose * kUp - kUnit * lower.array().abs();
+    upper = upper.array() + options_.pose * kUp + kUnit * upper.array().abs();
+  }
   return BoxesApart(a.lower, a.upper, lower, upper) || HoldsStatic(a, piece.convex, skin, item);
 }
 

@@ -13,15 +13,17 @@ struct EdgeCollisionOptions {
   /** Leaves are halved down to this length of s, a power of two >= 2^-40; then the verdict is
    kUndecided. */
   double shortest = 0x1p-30;
-  long max_leaves = 20000;           ///< likewise
-  double widest = 0.5;               ///< leaves of a greater half length are halved unseen
+  long max_leaves = 20000;  ///< likewise
+  double widest = 0.5;      ///< leaves of a greater half length are halved unseen
+  double pose = 0;          ///< m; kHolds speaks of objects wherever they are moved by so much
   EdgeEvidence* evidence = nullptr;  ///< takes the planes of a proof, where given
 };
 
 /** What became of the question whether a whole edge stays in C_free. */
 struct EdgeCollision {
   /** kHolds: every pair of AllPairs keeps apart (by more than minus its skin) for every real s in
-   [0,1]. kFails: `pair` provably meets at `s`. kUndecided: `pair` could not be settled around `s`.
+   [0,1], wherever each object is moved by at most `pose`. kFails: `pair` provably meets at `s`.
+   kUndecided: `pair` could not be settled around `s`.
  */
   Verdict verdict = Verdict::kHolds;
   numeric::Pair pair;

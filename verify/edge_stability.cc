@@ -17,7 +17,6 @@ namespace cguide::verify {
 
 using Eigen::Vector3d;
 using numeric::World;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 struct StabilityEdgeWorkspace::Scratch {
@@ -74,9 +73,9 @@ struct LeafBalance {
 };
 
 /** v - A(t) lambda(t). */
-void Residual(const LeafBalance& balance, const Vector3d& v_f, Model2 (&residual)[6]) {
+void Residual(const LeafBalance& balance, const Vector6d& v, Model2 (&residual)[6]) {
   for (int i = 0; i < 6; ++i) {
-    residual[i] = Constant<kDegree>(i < 3 ? v_f[i] : 0.0);
+    residual[i] = Constant<kDegree>(v[i]);
     for (int j = 0; j < balance.size; ++j) {
       residual[i] = residual[i] - balance.weight[j] * balance.wrench[j].row[i];
     }
@@ -91,16 +90,16 @@ Model2 RowTimes(const Matrix6d& R, int a, const Model2 (&x)[6]) {
 }
 
 /** Places of weights in certificates: shares of the load of about 1e-7, or all. */
-int PlacesOf(const Vector3d& v_f, Care care) {
+int PlacesOf(const Vector6d& v, Care care) {
   const int digits = care == Care::kQuick ? 7 : 17;
-  return std::clamp(digits - static_cast<int>(std::ceil(std::log10(v_f.norm()))), 0, 17);
+  return std::clamp(digits - static_cast<int>(std::ceil(std::log10(v.head<3>().norm()))), 0, 17);
 }
 
 /** Puts the constant and the linear part of the residual on the basis; a proposal like all weights.
  */
-void CorrectWeights(const Matrix6d& R, const Vector3d& v_f, int places, LeafBalance* balance) {
+void CorrectWeights(const Matrix6d& R, const Vector6d& v, int places, LeafBalance* balance) {
   Model2 residual[6];
-  Residual(*balance, v_f, residual);
+  Residual(*balance, v, residual);
   for (int part = 0; part <= 1; ++part) {
     Vector6d c;
     for (int i = 0; i < 6; ++i) c[i] = residual[i].c[part];
@@ -118,7 +117,7 @@ void CorrectWeights(const Matrix6d& R, const Vector3d& v_f, int places, LeafBala
 double Greater(double a, double b) { return a > b ? a : (b >= a ? b : NAN); }
 
 /** The two inequalities of DecideEdgeStability. NaN fails every comparison. */
-bool ProveBalance(const Matrix6d& R, const Vector3d& v_f, const LeafBalance& balance) {
+bool ProveBalance(const Matrix6d& R, const Vector6d& v, const LeafBalance& balance) {
   double least = INFINITY;
   for (int j = 0; j < balance.size; ++j) {
     const double lowest = LowerBound(balance.weight[j]);
@@ -126,7 +125,7 @@ bool ProveBalance(const Matrix6d& R, const Vector3d& v_f, const LeafBalance& bal
     if (j < 6 && !(lowest >= least)) least = lowest;
   }
   Model2 residual[6];
-  Residual(balance, v_f, residual);
+  Residual(balance, v, residual);
   double kappa = 0, moved = 0;
   for (int a = 0; a < 6; ++a) {
     double row = 0;
@@ -157,9 +156,11 @@ class Decider {
   void KeepContacts(const Leaf& leaf);
   bool HoldsOver(const Leaf& leaf);
   bool Balances();
-  bool Carries(const std::vector<ProposedForce>& forces, const Vector3d& v_f, int places);
+  bool Balances(const Vector6d& v, std::vector<check::ForceEvidence>* noted);
+  bool Carries(const std::vector<ProposedForce>& forces, const Vector6d& v, int places,
+               std::vector<check::ForceEvidence>* noted);
   void Split(const Leaf& leaf);
-  void Note(const std::vector<ProposedForce>& forces, const LeafBalance& balance);
+  void Note(check::Balance balance);
 
   const World& world_;
   const Edge& edge_;
@@ -233,31 +234,53 @@ void Decider::KeepContacts(const Leaf& leaf) {
   x_.kept.clear();
   for (const numeric::Contact& contact : x_.guide.contacts) {
     KeptContact kept;
-    if (!contact.certain || !x_.keeper.Keep(x_.state, contact, &kept)) continue;
+    if (!contact.certain || !x_.keeper.Keep(x_.state, contact, options_.robust.pose, &kept))
+      continue;
+    if (options_.robust.friction > 0) {
+      kept.friction = std::max(0.0, std::nextafter(kept.friction - options_.robust.friction, 0.0));
+    }
     x_.kept.push_back(std::move(kept));
   }
 }
 
+// For a centre of mass that may be elsewhere, each corner of what the moment may be in its place.
 bool Decider::Balances() {
-  const Vector3d v_f = -world_.tree().mass * world_.model().gravity;
   x_.arms.clear();
   for (const KeptContact& contact : x_.kept) {
     const Vector2 arm = contact.force_point - x_.state.com_W;
     x_.arms.push_back({arm.c[0].head<3>(), arm.c[1].head<3>(), arm.c[2].head<3>()});
   }
+  Vector6d v = Vector6d::Zero();
+  v.head<3>() = -world_.tree().mass * world_.model().gravity;
+  check::Balance balance;
+  if (!(options_.robust.com > 0)) {
+    if (!Balances(v, &balance.forces)) return false;
+  } else {
+    for (const Vector3d& moment : DisplacedMoments(v.head<3>(), options_.robust.com)) {
+      v.tail<3>() = moment;
+      if (!Balances(v, &balance.displaced.emplace_back())) return false;
+    }
+  }
+  if (options_.evidence) Note(std::move(balance));
+  return true;
+}
+
+bool Decider::Balances(const Vector6d& v, std::vector<check::ForceEvidence>* noted) {
   constexpr double kNarrow = 0x1p-5;
   for (const Care care : {Care::kQuick, Care::kThorough}) {
     if (care == Care::kThorough && leaf_.half > kNarrow) return false;
     for (const WeightKind kind : {WeightKind::kConstant, WeightKind::kAffine}) {
-      const auto& forces = x_.proposer.Propose(x_.kept, x_.arms, v_f, kind, care);
+      const auto& forces = x_.proposer.Propose(x_.kept, x_.arms, v, kind, care);
       if (forces.empty()) break;
-      if (Carries(forces, v_f, PlacesOf(v_f, care))) return true;
+      if (Carries(forces, v, PlacesOf(v, care), noted)) return true;
     }
   }
   return false;
 }
 
-bool Decider::Carries(const std::vector<ProposedForce>& forces, const Vector3d& v_f, int places) {
+// Contacts are numbered as in x_.kept.
+bool Decider::Carries(const std::vector<ProposedForce>& forces, const Vector6d& v, int places,
+                      std::vector<check::ForceEvidence>* noted) {
   LeafBalance balance;
   balance.size = static_cast<int>(forces.size());
   Matrix6d B;
@@ -276,26 +299,31 @@ bool Decider::Carries(const std::vector<ProposedForce>& forces, const Vector3d& 
   if (!R.allFinite()) return false;
   // The real mass is that of the model; its rounding in `tree` scales all weights alike, and being
   // interior does not depend on the scale of v.
-  CorrectWeights(R, v_f, places, &balance);
-  if (!ProveBalance(R, v_f, balance)) return false;
-  Note(forces, balance);
+  CorrectWeights(R, v, places, &balance);
+  if (!ProveBalance(R, v, balance)) return false;
+  for (int j = 0; j < balance.size; ++j) {
+    noted->push_back(
+        {forces[j].contact, forces[j].u_W, balance.weight[j].c[0], balance.weight[j].c[1]});
+  }
   return true;
 }
 
-// Only contacts that bear a force are written.
-void Decider::Note(const std::vector<ProposedForce>& forces, const LeafBalance& balance) {
-  if (!options_.evidence) return;
-  check::Balance& noted = options_.evidence->nodes[leaf_].balance.emplace();
+// Only contacts that bear a force are written, numbered in the order of their first.
+void Decider::Note(check::Balance balance) {
   std::vector<int> number(x_.kept.size(), -1);
-  for (int j = 0; j < balance.size; ++j) {
-    const ProposedForce& force = forces[j];
-    if (number[force.contact] < 0) {
-      number[force.contact] = static_cast<int>(noted.contacts.size());
-      noted.contacts.push_back(x_.kept[force.contact].evidence);
+  const auto renumber = [&](std::vector<check::ForceEvidence>& forces) {
+    for (check::ForceEvidence& force : forces) {
+      int& known = number[force.contact];
+      if (known < 0) {
+        known = static_cast<int>(balance.contacts.size());
+        balance.contacts.push_back(x_.kept[force.contact].evidence);
+      }
+      force.contact = known;
     }
-    noted.forces.push_back(
-        {number[force.contact], force.u_W, balance.weight[j].c[0], balance.weight[j].c[1]});
-  }
+  };
+  renumber(balance.forces);
+  for (auto& forces : balance.displaced) renumber(forces);
+  options_.evidence->nodes[leaf_].balance = std::move(balance);
 }
 
 bool Decider::HoldsOver(const Leaf& leaf) {
@@ -303,7 +331,7 @@ bool Decider::HoldsOver(const Leaf& leaf) {
   if (x_.kept.empty()) return false;
   if (world_.model().require == GuideRequirement::kContact) {
     if (options_.evidence) {
-      options_.evidence->nodes[leaf_].balance = check::Balance{{x_.kept.front().evidence}, {}};
+      options_.evidence->nodes[leaf_].balance = check::Balance{{x_.kept.front().evidence}, {}, {}};
     }
     return true;
   }

@@ -203,9 +203,12 @@ bool ContactKeeper::LiesBehind(const Flat& flat, int piece, int triangle) {
   const Geometry& g = world_.geometry();
   const int object = g.pieces[piece].object;
   const exact::ExactPiece& asked = exact_.objects[object][piece - g.object_begin[object]];
-  const ExactPlane plane = flat.triangle < 0
-                               ? ExactPlaneOf(world_.model(), g, flat, exact_)
-                               : PlaneOf(ExactFace(flat.piece, flat.triangle), flat.side);
+  ExactPlane plane = flat.triangle < 0 ? ExactPlaneOf(world_.model(), g, flat, exact_)
+                                       : PlaneOf(ExactFace(flat.piece, flat.triangle), flat.side);
+  // The plane and another object may both be moved; |n|_1 is no less than |n|.
+  if (pose_ > 0 && object != g.pieces[flat.piece].object) {
+    for (const Rational& x : plane.n) plane.h -= 2 * Lift(pose_) * abs(x);
+  }
   if (triangle < 0) return entry->second = Behind(plane, asked);
   const exact::Triangle& t = ExactFace(piece, triangle);
   return entry->second = Behind(plane, t[0]) && Behind(plane, t[1]) && Behind(plane, t[2]);
@@ -248,12 +251,16 @@ bool ContactKeeper::KeepOnFlat(const MovingSite& site, const numeric::Contact& c
   const Plane plane = PlaneOf(piece, flat.face, size);
   Model2 d = Dot<kDegree>(plane.n, site.x) - Constant<kDegree>(plane.h);
   d.r = (d.r + plane.error) * kUp;
+  d.r += pose_ * kUp;
   const double lowest = LowerBound(d), highest = UpperBound(d);
   if (!(lowest > site.radius - site.skin && highest < site.radius + rules.epsilon)) return false;
-  if (flat.face >= 0 && !InFace(piece, flat.face, site.x, plane.error + site.skin)) return false;
+  if (flat.face >= 0 && !InFace(piece, flat.face, site.x, plane.error + site.skin + pose_)) {
+    return false;
+  }
   kept->friction = world_.model().objects[piece.object].friction;
   // y(t) is within the largest |d| of x(t).
-  const double reach = std::max(std::abs(lowest), std::abs(highest)) + rules.seam + plane.error;
+  const double reach =
+      std::max(std::abs(lowest), std::abs(highest)) + rules.seam + plane.error + 2 * pose_;
   kept->evidence = {contact.site, flat.piece, check::FlatEvidence{flat.face, {}, 1}, {}, {}, {}};
   for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
     if (p == flat.piece) continue;
@@ -275,7 +282,9 @@ bool ContactKeeper::KeepOnFlat(const MovingSite& site, const numeric::Contact& c
 }
 
 bool ContactKeeper::Keep(const TaylorState<kDegree>& state, const numeric::Contact& contact,
-                         KeptContact* kept) {
+                         double pose, KeptContact* kept) {
+  if (pose != pose_) behind_.clear();
+  pose_ = pose;
   const Geometry& g = world_.geometry();
   const numeric::BodySite* body_site = FindSite(g, contact);
   if (!body_site) return false;

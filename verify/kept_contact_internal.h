@@ -54,9 +54,10 @@ class ContactKeeper {
  public:
   explicit ContactKeeper(const numeric::World& world);
 
-  /** Whether the contact, found at the middle of the leaf, provably stays for every t. x(t) is the
-   site's centre. */
-  bool Keep(const TaylorState<kDegree>& state, const numeric::Contact& contact, KeptContact* kept);
+  /** Whether the contact, found at the middle of the leaf, provably stays for every t, wherever
+   each object is moved by at most `pose`. x(t) is the site's centre. */
+  bool Keep(const TaylorState<kDegree>& state, const numeric::Contact& contact, double pose,
+            KeptContact* kept);
 
  private:
   /** The site over the leaf. */
@@ -131,6 +132,9 @@ class ContactKeeper {
 
   const numeric::World& world_;
   exact::PreparedModel exact_;
+  /** How far each object may be from its place, and so two from each other twice as far; for which
+   `behind_` holds. */
+  double pose_ = 0;
   std::map<std::tuple<Flat, int, int>, bool> behind_;  ///< flat, piece, triangle or -1
   std::map<int, MeshEdges> edges_;                     ///< by piece
   /** Faces of hulls, by piece. */

@@ -83,18 +83,20 @@ bool ContactKeeper::KeepOnConvex(const MovingSite& site, const numeric::Contact&
   const ObstaclePiece& piece = g.pieces[index];
   const auto at = [&](const Convex& s) { return numeric::ProjectPoint(s, contact.x_W); };
   const numeric::PointProjection here = at(piece.convex);
-  // The stored middle is as good a reference as the real one: `step` counts from it.
-  const double error = here.distance_error + here.y_error + site.step;
+  // The stored middle is as good a reference as the real one: `step` counts from it. A piece that
+  // is moved sees the site moved.
+  const double error = here.distance_error + here.y_error + site.step + pose_;
   const double lowest = here.distance - error, highest = (here.distance + error) * kUp;
   if (!(lowest > site.radius && lowest > 0 && highest < site.radius + rules.epsilon)) return false;
   kept->friction = world_.model().objects[piece.object].friction;
-  const double ball = (rules.seam + error) * kUp + 8 * kUnit * contact.x_W.lpNorm<1>();
+  const double ball = (rules.seam + error + 2 * pose_) * kUp + 8 * kUnit * contact.x_W.lpNorm<1>();
   kept->evidence = {contact.site, index, {}, NearEvidenceOf(piece.convex, here), {}, {}};
   for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
     const ObstaclePiece& other = g.pieces[p];
     if (p == index) continue;
     const bool away = numeric::BallApart(here.y, ball, other);
-    NoteAway(p, away ? here.y : contact.x_W, away ? ball : highest + site.step, kept);
+    const double nearer = highest + site.step + 3 * pose_;
+    NoteAway(p, away ? here.y : contact.x_W, away ? ball : nearer, kept);
     if (away) continue;
     double distance = -INFINITY;
     if (other.kind == PieceKind::kConvex) {
@@ -104,7 +106,7 @@ bool ContactKeeper::KeepOnConvex(const MovingSite& site, const numeric::Contact&
       distance = numeric::HalfspaceDistance(other, contact.x_W) -
                  numeric::HalfspaceError(other, contact.x_W.lpNorm<1>());
     }
-    if (!(distance - site.step * kUp > highest)) return false;
+    if (!(distance - (site.step + 3 * pose_) * kUp > highest)) return false;
     kept->friction = std::min(kept->friction, world_.model().objects[other.object].friction);
   }
   kept->n_W = here.n;
@@ -131,7 +133,9 @@ bool ContactKeeper::KeepOnRidge(const MovingSite& site, const numeric::Contact& 
   const Vector3d a = corners[ridge[0]];
   const double far = (site.upper - a).cwiseAbs().cwiseMax((site.lower - a).cwiseAbs()).norm();
   double slack = 8 * (s.error + 32 * kUnit * (far + a.lpNorm<1>()));
-  Vector2 w = site.x - Constant<kDegree>(a);
+  Vector2 x = site.x;  // as the piece sees it, which may be moved
+  x.r.head<3>() += pose_ * kUp;
+  Vector2 w = x - Constant<kDegree>(a);
   if (ridge.size() == 2) {
     const Vector3d e = corners[ridge[1]] - a;
     slack *= 1 + 4 * far / e.norm();
@@ -157,9 +161,9 @@ bool ContactKeeper::KeepOnRidge(const MovingSite& site, const numeric::Contact& 
   if (!(least > 0 && least - s.radius > site.radius)) return false;
   if (!(farthest < site.radius + rules.epsilon)) return false;
   kept->normal_error = bend / least * kUp + 64 * kUnit;
-  const Vector2 y = site.x - w;
-  const double seam = rules.seam + slack + s.radius * (1 + kept->normal_error) * kUp;
-  return FinishNear(site, index, {LowerOf(y), UpperOf(y), seam, farthest},
+  const Vector2 y = x - w;
+  const double seam = rules.seam + slack + s.radius * (1 + kept->normal_error) * kUp + 2 * pose_;
+  return FinishNear(site, index, {LowerOf(y), UpperOf(y), seam, farthest + 3 * pose_},
                     {contact.site, index, {}, {}, check::RidgeEvidence{ridge}, {}}, kept);
 }
 

@@ -116,8 +116,8 @@ bool ContactKeeper::GrowTriangles(const Flat& flat, const TrianglePlane& plane, 
       const Vector3d way = mesh.vertices[to] - mesh.vertices[from];
       const Vector3d inward = plane.n.cross(way);
       const double border = inward.dot(mesh.vertices[from]);
-      const double margin =
-          way.norm() * (16 * mesh.error + (plane.normal_error + 64 * kUnit) *
+      const double margin = way.norm() * (pose_ * kUp + 16 * mesh.error +
+                                          (plane.normal_error + 64 * kUnit) *
                                               (size + mesh.vertices[from].lpNorm<1>()));
       const bool inside = LowerBound(Dot<kDegree>(inward, y)) - border > margin &&
                           inward.dot(centroid) - border > margin;
@@ -160,6 +160,7 @@ bool ContactKeeper::KeepOnTriangles(const MovingSite& site, const numeric::Conta
   const double size = site.lower.cwiseAbs().cwiseMax(site.upper.cwiseAbs()).sum();
   Model2 d = Dot<kDegree>(plane.n, site.x) - Constant<kDegree>(plane.h);
   d.r = (d.r + plane.error + (plane.normal_error + 16 * kUnit) * size) * kUp;
+  d.r += pose_ * kUp;
   const double lowest = LowerBound(d);
   if (!(lowest > 0 && lowest > site.radius - site.skin)) return false;
   if (!(UpperBound(d) < site.radius + rules.epsilon)) return false;
@@ -169,7 +170,7 @@ bool ContactKeeper::KeepOnTriangles(const MovingSite& site, const numeric::Conta
   kept->evidence = {contact.site, flat.piece, check::FlatEvidence{-1, triangles, flat.side},
                     {},           {},         {}};
   kept->friction = world_.model().objects[g.pieces[flat.piece].object].friction;
-  const double around = rules.seam + plane.normal_error * UpperBound(d) + 1e-9;
+  const double around = rules.seam + plane.normal_error * UpperBound(d) + 2 * pose_ + 1e-9;
   const Vector3d lower = LowerOf(y).array() - around, upper = UpperOf(y).array() + around;
   for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
     if (FartherThan(g.pieces[p], lower, upper, 0)) {

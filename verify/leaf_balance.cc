@@ -9,7 +9,6 @@ namespace cguide::verify {
 namespace {
 
 using Eigen::Vector3d;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 /** Directions are written with four places; that turns them by less than 1e-4, and cones by as
  * much.
@@ -29,6 +28,17 @@ double ShortNumber(double x, int places) {
   const double scale = std::pow(10, places);
   const double rounded = std::round(x * scale) / scale;
   return std::isfinite(rounded) ? rounded : x;
+}
+
+std::vector<Vector3d> DisplacedMoments(const Vector3d& v_f, double com) {
+  const bool along = (v_f.array() == 0).count() == 2;
+  const double size = std::sqrt(along ? 2.0 : 3.0) * com * v_f.norm() * (1 + 0x1p-40);
+  std::vector<Vector3d> corners;
+  for (int i = 0; i < 3; ++i) {
+    if (along && v_f[i] != 0) continue;
+    for (const double sign : {1.0, -1.0}) corners.push_back(sign * size * Vector3d::Unit(i));
+  }
+  return corners;
 }
 
 // u.n >= |u| (C + error) on the sides of the pyramid, with room for the rounding of u.
@@ -70,13 +80,12 @@ bool BalanceProposer::ChooseBasis() {
 }
 
 /** Weights of all columns, those of the basis at least `share` of the load. */
-bool BalanceProposer::Weigh(const Vector3d& v_f, double share, std::vector<double>* weights) {
+bool BalanceProposer::Weigh(const Vector6d& v, double share, std::vector<double>* weights) {
   cone_.AssignForces(columns_);
-  Vector6d rest = Vector6d::Zero();
-  rest.head<3>() = v_f;
+  Vector6d rest = v;
   weights->assign(columns_.size(), 0);
   for (const int j : basis_) {
-    (*weights)[j] = share * v_f.norm();
+    (*weights)[j] = share * v.head<3>().norm();
     rest -= (*weights)[j] * WrenchOf(columns_[j]);
   }
   const auto answer = TryConeMembership(cone_, numeric::WrenchDemand(rest), &workspace_);
@@ -101,7 +110,7 @@ void BalanceProposer::Collect(const std::vector<double>& from, const std::vector
 }
 
 void BalanceProposer::Try(const std::vector<KeptContact>& contacts, const std::vector<Arm>& arms,
-                          const Vector3d& v_f, WeightKind kind, const Effort& effort) {
+                          const Vector6d& v, WeightKind kind, const Effort& effort) {
   directions_.clear();
   forces_.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -112,14 +121,14 @@ void BalanceProposer::Try(const std::vector<KeptContact>& contacts, const std::v
   for (int round = 0; round < 3; ++round) {
     const double share = std::ldexp(effort.share, -5 * round);
     if (kind == WeightKind::kConstant) {
-      if (!Weigh(v_f, share, &from_)) continue;
+      if (!Weigh(v, share, &from_)) continue;
       Collect(from_, from_);
       return;
     }
     PlaceColumns(arms, -1);
-    if (!Weigh(v_f, share, &from_)) continue;
+    if (!Weigh(v, share, &from_)) continue;
     PlaceColumns(arms, 1);
-    if (!Weigh(v_f, share, &to_)) continue;
+    if (!Weigh(v, share, &to_)) continue;
     Collect(from_, to_);
     return;
   }
@@ -127,12 +136,12 @@ void BalanceProposer::Try(const std::vector<KeptContact>& contacts, const std::v
 
 const std::vector<ProposedForce>& BalanceProposer::Propose(const std::vector<KeptContact>& contacts,
                                                            const std::vector<Arm>& arms,
-                                                           const Vector3d& v_f, WeightKind kind,
+                                                           const Vector6d& v, WeightKind kind,
                                                            Care care) {
   const Effort efforts[] = {{4, true, 0x1p-4}, {16, false, 0x1p-10}, {16, false, 0x1p-25}};
   const int count = care == Care::kQuick ? 2 : 3;
   for (int i = 0; i < count; ++i) {
-    Try(contacts, arms, v_f, kind, efforts[i]);
+    Try(contacts, arms, v, kind, efforts[i]);
     if (!forces_.empty()) break;
   }
   return forces_;

@@ -7,6 +7,8 @@
 
 namespace cguide::verify {
 
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
 /** A force direction at a kept contact, with the weight w0 + w1 t over a leaf. */
 struct ProposedForce {
   int contact = -1;
@@ -30,7 +32,7 @@ enum class WeightKind { kConstant, kAffine };
 /** How near the limit of balance to look; the nearer, the longer numbers are. */
 enum class Care { kQuick, kThorough };
 
-/** Proposes forces that carry the weight -v_f at the centre of mass, with room on every side:
+/** Proposes forces that sum up to a wrench about the centre of mass, with room on every side:
  floats, nothing is promised. One per thread. */
 class BalanceProposer {
  public:
@@ -38,8 +40,8 @@ class BalanceProposer {
    while contacts and centre of mass move; each lies inside the friction cone by more than the
    normal changes over the leaf. Empty where none was found. */
   const std::vector<ProposedForce>& Propose(const std::vector<KeptContact>& contacts,
-                                            const std::vector<Arm>& arms,
-                                            const Eigen::Vector3d& v_f, WeightKind kind, Care care);
+                                            const std::vector<Arm>& arms, const Vector6d& v,
+                                            WeightKind kind, Care care);
 
  private:
   /** Pyramids of few sides and short directions do for most leaves. */
@@ -49,11 +51,11 @@ class BalanceProposer {
     double share = 0;  ///< of the load that each direction of the basis bears, to begin with
   };
   void Try(const std::vector<KeptContact>& contacts, const std::vector<Arm>& arms,
-           const Eigen::Vector3d& v_f, WeightKind kind, const Effort& effort);
+           const Vector6d& v, WeightKind kind, const Effort& effort);
   void AddDirections(int index, const KeptContact& contact, const Effort& effort);
   void PlaceColumns(const std::vector<Arm>& arms, double t);
   bool ChooseBasis();
-  bool Weigh(const Eigen::Vector3d& v_f, double share, std::vector<double>* weights);
+  bool Weigh(const Vector6d& v, double share, std::vector<double>* weights);
   void Collect(const std::vector<double>& from, const std::vector<double>& to);
 
   std::vector<ProposedForce> directions_;
@@ -64,6 +66,10 @@ class BalanceProposer {
   numeric::WrenchCone cone_;
   numeric::ConeWorkspace workspace_;
 };
+
+/** Corners of a square, where v_f is parallel to an axis, else of an octahedron, that holds every
+ moment e x v_f, |e| <= com, but for rounding: the checker's (FORMAT.md, lemma 10), in its order. */
+std::vector<Eigen::Vector3d> DisplacedMoments(const Eigen::Vector3d& v_f, double com);
 
 /** x to `places` decimal places: short to write, and the double read back is the same. */
 double ShortNumber(double x, int places);

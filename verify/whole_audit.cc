@@ -31,6 +31,7 @@ WholeAudit AuditWhole(const numeric::World& world, const Path& path,
                       const WholeAuditOptions& options) {
   CheckPath(path, world.model().robot);
   WholeAudit audit;
+  audit.robust = options.robust;
   for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
     if (exact::WithinLimits(world.model().robot, path.waypoints[i])) continue;
     audit.beyond_limits.push_back(static_cast<int>(i));
@@ -39,7 +40,8 @@ WholeAudit AuditWhole(const numeric::World& world, const Path& path,
   const std::vector<Edge> edges = check::EdgesOf(path);
   const int count = static_cast<int>(edges.size());
   audit.edges.resize(edges.size());
-  tbb::enumerable_thread_specific<EdgeAuditor> auditors([&] { return EdgeAuditor(world); });
+  tbb::enumerable_thread_specific<EdgeAuditor> auditors(
+      [&] { return EdgeAuditor(world, options.robust); });
   std::mutex progress;
   int finished = 0;
   const auto audit_edge = [&](int i) {

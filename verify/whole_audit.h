@@ -14,6 +14,8 @@ struct WholeAuditOptions {
   /** Proofs of an earlier audit of the same path, which are re-checked instead of being looked for.
    */
   std::vector<check::EdgeProof> known;
+  /** What is proved is proved for every model in this box; what is refuted, of the model itself. */
+  check::Robustness robust;
   double measure_step = 0.005;  ///< of the samples that measure refuted edges
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(int done, int edges)> on_progress;  ///< called from one thread at a time
@@ -23,6 +25,7 @@ struct WholeAuditOptions {
  (which hold on an edge iff they hold at its ends), collisions, contact and balance. An edge holds
  where the checker has accepted its proof; a refutation rests on doubles with derived bounds. */
 struct WholeAudit {
+  check::Robustness robust;
   /** kHolds: every edge has a proof. An interrupted audit never holds. */
   Verdict verdict = Verdict::kHolds;
   std::vector<int> beyond_limits;  ///< waypoints

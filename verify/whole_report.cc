@@ -77,6 +77,12 @@ Json Measured(const Model& model, const Violation& v) {
 
 }  // namespace
 
+std::string DescribeRobustness(const check::Robustness& robust) {
+  return "every model with friction less by up to " + Short(robust.friction) +
+         ", each object moved by up to " + numeric::Millimetres(robust.pose) +
+         ", the centre of mass off by up to " + numeric::Millimetres(robust.com);
+}
+
 std::string WriteWholeText(const AuditSubject& subject, const Model& model,
                            const WholeAudit& audit) {
   const Totals totals = Count(audit);
@@ -99,6 +105,9 @@ std::string WriteWholeText(const AuditSubject& subject, const Model& model,
            << Short(v.length) << ": " << DescribeViolation(model, v) << '\n';
     }
   }
+  if (!(audit.robust == check::Robustness{})) {
+    text << "  proved: for " << DescribeRobustness(audit.robust) << '\n';
+  }
   if (model.contact.skin > 0) {
     text << "  penetration below the skin of " << numeric::Millimetres(model.contact.skin)
          << " is allowed for the pairs that may touch\n";
@@ -116,6 +125,11 @@ std::string WriteWholeJson(const AuditSubject& subject, const Model& model,
   json["model"] = subject.model_digest;
   json["edges_tested"] = "whole";
   json["skin_m"] = model.contact.skin;
+  if (!(audit.robust == check::Robustness{})) {
+    json["robust"] = {{"friction", audit.robust.friction},
+                      {"pose_m", audit.robust.pose},
+                      {"com_m", audit.robust.com}};
+  }
   json["verdict"] = Name(audit.verdict);
   json["waypoints_beyond_limits"] = audit.beyond_limits;
   json["edges"] = Json::array();

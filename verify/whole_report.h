@@ -15,4 +15,7 @@ std::string WriteWholeText(const AuditSubject& subject, const Model& model,
 std::string WriteWholeJson(const AuditSubject& subject, const Model& model,
                            const WholeAudit& audit);
 
+/** What a box of models is, in words. */
+std::string DescribeRobustness(const check::Robustness& robust);
+
 }  // namespace cguide::verify

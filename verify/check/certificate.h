@@ -86,6 +86,9 @@ struct ForceEvidence {
 struct Balance {
   std::vector<ContactEvidence> contacts;
   std::vector<ForceEvidence> forces;
+  /** Where the centre of mass may be elsewhere, instead of `forces`: one list for each corner
+   of what its moment may be (FORMAT.md, lemma 10). */
+  std::vector<std::vector<ForceEvidence>> displaced;
 };
 
 /** Part of an edge: what is proved over the whole of it, and its two halves where something is
@@ -105,9 +108,21 @@ struct EdgeProof {
   Node root;
 };
 
+/** A box of models about the one of a certificate: every object moved by a translation of its own
+ of at most `pose`, every friction less by at most `friction` (and not below 0), the robot's centre
+ of mass displaced by at most `com`, at each s as it may be (FORMAT.md part 7). What is proved for
+ the box is proved of each model in it. */
+struct Robustness {
+  double friction = 0;
+  double pose = 0;  ///< m
+  double com = 0;   ///< m
+  bool operator==(const Robustness&) const = default;
+};
+
 struct Certificate {
   std::string tool;
   Model model;
+  Robustness robust;
   Path path;
   std::vector<EdgeProof> proofs;  ///< by edge, each at most once
 };

@@ -115,24 +115,35 @@ ContactEvidence ReadContact(const View& view, const Counts& counts) {
   return contact;
 }
 
+std::vector<ForceEvidence> ReadForces(const View& view, std::size_t contacts) {
+  std::vector<ForceEvidence> forces;
+  for (std::size_t i = 0; i < view.Size(); ++i) {
+    const View force = view.At(i);
+    if (force.Size() != 6) force.Fail("a force is [contact, ux, uy, uz, w0, w1]");
+    ForceEvidence read;
+    read.contact = force.At(0).Index(contacts);
+    for (int k = 0; k < 3; ++k) read.u_W[k] = force.At(1 + k).Number();
+    read.w0 = force.At(4).Number();
+    read.w1 = force.At(5).Number();
+    forces.push_back(read);
+  }
+  return forces;
+}
+
 Balance ReadBalance(const View& view, const Counts& counts) {
-  view.AllowKeys({"contacts", "forces"});
+  view.AllowKeys({"contacts", "forces", "displaced"});
   Balance balance;
   const View contacts = view.Get("contacts");
   for (std::size_t i = 0; i < contacts.Size(); ++i) {
     balance.contacts.push_back(ReadContact(contacts.At(i), counts));
   }
-  if (!view.Has("forces")) return balance;
-  const View forces = view.Get("forces");
-  for (std::size_t i = 0; i < forces.Size(); ++i) {
-    const View force = forces.At(i);
-    if (force.Size() != 6) force.Fail("a force is [contact, ux, uy, uz, w0, w1]");
-    ForceEvidence read;
-    read.contact = force.At(0).Index(balance.contacts.size());
-    for (int k = 0; k < 3; ++k) read.u_W[k] = force.At(1 + k).Number();
-    read.w0 = force.At(4).Number();
-    read.w1 = force.At(5).Number();
-    balance.forces.push_back(read);
+  if (view.Has("forces")) {
+    balance.forces = ReadForces(view.Get("forces"), balance.contacts.size());
+  }
+  if (!view.Has("displaced")) return balance;
+  const View displaced = view.Get("displaced");
+  for (std::size_t i = 0; i < displaced.Size(); ++i) {
+    balance.displaced.push_back(ReadForces(displaced.At(i), balance.contacts.size()));
   }
   return balance;
 }
@@ -192,12 +203,22 @@ Path ReadPath(const View& view) {
   return path;
 }
 
+Robustness ReadRobustness(const View& view) {
+  view.AllowKeys({"friction", "pose", "com"});
+  const auto width = [&](const char* key) {
+    const double value = view.Get(key).Number();
+    if (!(value >= 0)) view.Get(key).Fail("a width is not negative");
+    return value;
+  };
+  return {width("friction"), width("pose"), width("com")};
+}
+
 }  // namespace
 
 Certificate ParseCertificate(const std::string& text) {
   const nlohmann::json json = ParseJson(text);
   const View view(json);
-  view.AllowKeys({"schema", "model", "path", "tool", "proofs"});
+  view.AllowKeys({"schema", "model", "robust", "path", "tool", "proofs"});
   const View schema = view.Get("schema");
   if (schema.Text() != "cguide-certificate/1") {
     schema.Fail("this program reads \"cguide-certificate/1\" alone");
@@ -205,6 +226,7 @@ Certificate ParseCertificate(const std::string& text) {
   Certificate certificate;
   if (view.Has("tool")) certificate.tool = view.Get("tool").Text();
   certificate.model = ReadModel(view.Get("model"));
+  if (view.Has("robust")) certificate.robust = ReadRobustness(view.Get("robust"));
   certificate.path = ReadPath(view.Get("path"));
   const Counts counts(certificate.model);
   const View proofs = view.Get("proofs");

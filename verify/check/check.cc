@@ -23,10 +23,10 @@ struct Checker::State {
   State(const Model& given, const CheckOptions& options)
       : model(given), bits(options.precise_bits) {
     if (bits == 0) {
-      fast.emplace(model);
+      fast.emplace(model, options.robust);
     } else {
       const PrecisionScope scope(bits);
-      precise.emplace(model);
+      precise.emplace(model, options.robust);
     }
   }
 
@@ -39,6 +39,9 @@ struct Checker::State {
 Checker::Checker(const Model& model, const CheckOptions& options) {
   const int bits = options.precise_bits;
   Require(bits == 0 || (bits >= 53 && bits <= 4096), "the precision must lie in 53..4096 bits");
+  for (const double width : {options.robust.friction, options.robust.pose, options.robust.com}) {
+    Require(width >= 0 && width <= 1e9, "widths of the box of models must lie in 0..1e9");
+  }
   RequireIeeeArithmetic();
   RequireCheckable(model);
   state_ = std::make_unique<State>(model, options);
@@ -79,7 +82,9 @@ std::vector<Edge> EdgesOf(const Path& path) {
 
 CheckReport CheckCertificate(const Certificate& certificate, const CheckOptions& options) {
   const Robot& robot = certificate.model.robot;
-  Checker checker(certificate.model, options);
+  CheckOptions for_box = options;
+  for_box.robust = certificate.robust;
+  Checker checker(certificate.model, for_box);
   CheckPath(certificate.path, robot);
   const std::vector<Edge> edges = EdgesOf(certificate.path);
   CheckReport report;

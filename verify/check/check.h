@@ -12,6 +12,8 @@ namespace cguide::check {
 struct CheckOptions {
   /** 0: ends of intervals are doubles; else MPFR numbers of so many bits, 53 to 4096. */
   int precise_bits = 0;
+  /** Proofs have to hold for every model in this box. CheckCertificate takes the certificate's. */
+  Robustness robust;
 };
 
 /** Re-checks proofs of edges of one model. Keeps a copy of the model, and scratch: one per thread.

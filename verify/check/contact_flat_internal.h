@@ -6,6 +6,17 @@
 // Contacts whose foot stays on a face (FORMAT.md part 5.1).
 namespace cguide::check {
 
+// Of another object the plane and the points asked about may both be moved, each by at most `pose`:
+// n.z <= h - 2 pose |n|_1 stays true, |n|_1 being no less than |n|.
+template <typename I>
+ExactPlane ContactChecker<I>::PlaneFor(const Flat& flat, int piece) const {
+  const int own = prepared_.obstacles[std::get<0>(flat.key)].object;
+  if (prepared_.robust.pose == 0 || prepared_.obstacles[piece].object == own) return flat.exact;
+  ExactPlane lower = flat.exact;
+  for (const Rational& x : flat.exact.n) lower.h -= 2 * Lift(prepared_.robust.pose) * abs(x);
+  return lower;
+}
+
 template <typename I>
 bool ContactChecker<I>::LiesBehind(const Flat& flat, int piece, int triangle) const {
   const auto key = std::tuple_cat(flat.key, std::tuple(piece, triangle));
@@ -13,10 +24,11 @@ bool ContactChecker<I>::LiesBehind(const Flat& flat, int piece, int triangle) co
   const auto [entry, is_new] = cache_.try_emplace(key, false);
   if (!is_new) return entry->second;
   const Piece& asked = *prepared_.obstacles[piece].piece;
-  if (triangle < 0) return entry->second = IsBehind(flat.exact, asked);
+  const ExactPlane plane = PlaneFor(flat, piece);
+  if (triangle < 0) return entry->second = IsBehind(plane, asked);
   bool behind = true;
   for (const Eigen::Vector3d& v : CornersOf(piece, triangle)) {
-    behind = behind && IsBehind(flat.exact, ApplyExactly(asked.X_WP, v));
+    behind = behind && IsBehind(plane, ApplyExactly(asked.X_WP, v));
   }
   return entry->second = behind;
 }
@@ -103,7 +115,8 @@ bool ContactChecker<I>::IsOverTriangles(const ContactEvidence& evidence, const F
     const IntervalVector<I> inward = Cross(flat.n, way);
     const I border = Dot(inward, from);
     if (!IsPositive(Dot(inward, centroid) - border)) return false;
-    if (!IsPositive(LowerBound(Dot(inward, y)) - border)) return false;
+    const I room = Moved() * Upper(Norm(inward));
+    if (!IsPositive(LowerBound(Dot(inward, y)) - border - room)) return false;
   }
   return true;
 }
@@ -121,7 +134,7 @@ bool ContactChecker<I>::IsOverFace(const ContactEvidence& evidence, const Flat& 
   for (const int k : {(axis + 1) % 3, (axis + 2) % 3}) {
     const IntervalVector<I>& a = obstacle.convex->X.R[k];
     const Polynomial<I> along = Dot(a, site.x) - Polynomial<I>(Dot(a, obstacle.convex->X.p));
-    if (!IsPositive(half(k) - Magnitude(RangeOf(along)))) return false;
+    if (!IsPositive(half(k) - Magnitude(RangeOf(along)) - Moved())) return false;
   }
   return true;
 }
@@ -162,18 +175,19 @@ bool ContactChecker<I>::OthersAllow(const ContactEvidence& evidence, const Flat&
 }
 
 // The distance from the plane is that from the piece because the foot lies in the face; of other
-// pieces every point within the seam of the foot is behind the plane and so no nearer.
+// pieces every point within the seam of the foot is behind the plane and so no nearer. A piece that
+// is moved by at most `pose` changes the distance, and moves the foot on it, by no more.
 template <typename I>
 std::optional<KeptContact<I>> ContactChecker<I>::KeepOnFlat(const ContactEvidence& evidence,
                                                             const MovingSite<I>& site) {
   const std::optional<Flat> flat = FlatOf(evidence);
   if (!flat) return Decline("the piece has no such face");
   const Polynomial<I> d = Dot(flat->n, site.x) - Polynomial<I>(flat->h);
-  const I lowest = LowerBound(d), r(site.radius);
+  const I lowest = Lower(LowerBound(d) - Moved()), r(site.radius);
   if (!IsPositive(lowest - (r - I(site.skin)))) return Decline("it may be too near");
   if (!evidence.flat->triangles.empty() && !IsPositive(lowest))
     return Decline("it may be too near");
-  if (!IsNegative(UpperBound(d) - (r + I(model_.contact.epsilon))))
+  if (!IsNegative(UpperBound(d) + Moved() - (r + I(model_.contact.epsilon))))
     return Decline("it may be too far");
   PolynomialVector<I> y;
   for (int i = 0; i < 3; ++i) y[i] = site.x[i] - flat->n[i] * d;

@@ -21,8 +21,8 @@ struct KeptContact {
   PolynomialVector<I> point;  ///< where forces act
 };
 
-/** Answers of exact_plane.h that were given before: (piece, face, triangle, side) of the plane,
- piece and triangle asked about. */
+/** Answers of exact_plane.h that were given before for one box of models: (piece, face, triangle,
+ side) of the plane, piece and triangle asked about. */
 using BehindCache = std::map<std::tuple<int, int, int, int, int, int>, bool>;
 
 /** A site and what it is tested against. */
@@ -62,7 +62,8 @@ class ContactChecker {
     ExactPlane exact;
     std::tuple<int, int, int, int> key;
   };
-  /** A ball about a moving point, to be kept apart from pieces. */
+  /** A ball about a moving point, to be kept apart from pieces wherever they are in the box of
+   models, when the piece of the contact is in its place. */
   struct Guard {
     PolynomialVector<I> center;
     I radius;
@@ -90,11 +91,14 @@ class ContactChecker {
   bool IsAway(const Guard& guard, const PlacedMesh<I>& mesh, const PlacedTriangle<I>& triangle,
               const std::vector<Plane>& planes) const;
   bool LiesBehind(const Flat& flat, int piece, int triangle) const;
+  ExactPlane PlaneFor(const Flat& flat, int piece) const;
   IntervalVector<I> AboveFoot(const Flat& flat, const Guard& guard) const;
   std::optional<IntervalVector<I>> PointOf(const NearEvidence& near, const Piece& piece) const;
   I Excess(const PlacedSet<I>& placed, const IntervalVector<I>& y_P,
            const IntervalVector<I>& w_W) const;
   Guard MakeGuard(const PolynomialVector<I>& center, const I& radius) const;
+  /** How far an object may be from its place; two of them from each other twice as far. */
+  I Moved() const { return I(prepared_.robust.pose); }
 
   const std::vector<Plane>& PlanesFor(const ContactEvidence& evidence, int piece) const {
     static const std::vector<Plane> kNone;
@@ -124,8 +128,9 @@ IntervalVector<I> Normalized(const IntervalVector<I>& v) {
 template <typename I>
 typename ContactChecker<I>::Guard ContactChecker<I>::MakeGuard(const PolynomialVector<I>& center,
                                                                const I& radius) const {
-  Guard guard{center, radius, {}};
-  for (int i = 0; i < 3; ++i) guard.box[i] = RangeOf(center[i]) + PlusMinus(radius);
+  const I both = prepared_.robust.pose > 0 ? radius + I(2.0) * Moved() : radius;
+  Guard guard{center, both, {}};
+  for (int i = 0; i < 3; ++i) guard.box[i] = RangeOf(center[i]) + PlusMinus(both);
   return guard;
 }
 

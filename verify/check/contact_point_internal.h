@@ -79,7 +79,7 @@ bool ContactChecker<I>::OthersStayAway(const ContactEvidence& evidence, const Gu
 }
 
 // y and w are those of the core; the piece's point is y + ball n, its distance |w| - ball
-// (FORMAT.md, lemma 7).
+// (FORMAT.md, lemma 7). A piece that is moved by t sees the site moved by -t.
 template <typename I>
 std::optional<KeptContact<I>> ContactChecker<I>::KeepNear(const ContactEvidence& evidence,
                                                           const MovingSite<I>& site) {
@@ -95,7 +95,7 @@ std::optional<KeptContact<I>> ContactChecker<I>::KeepNear(const ContactEvidence&
     away[i] = Magnitude(RangeOf(site.x[i]) - x0[i]);
   }
   const IntervalVector<I> w0 = Minus(x0, y0);
-  const I step = Upper(Norm(away)), spread = Upper(step + Sqrt(Excess(placed, *y_P, w0)));
+  const I step = Upper(Norm(away) + Moved()), spread = Upper(step + Sqrt(Excess(placed, *y_P, w0)));
   const I length = Norm(w0), ball(placed.set.radius), r(site.radius);
   const I nearest = Lower(length) - spread - ball, farthest = Upper(length) + spread - ball;
   if (!IsPositive(nearest - r) || !IsPositive(nearest)) return Decline("it may be too near");
@@ -145,8 +145,11 @@ std::optional<KeptContact<I>> ContactChecker<I>::KeepOnRidge(const ContactEviden
                                                              const MovingSite<I>& site) {
   const Obstacle<I>& obstacle = prepared_.obstacles[evidence.piece];
   if (!obstacle.convex) return Decline("the piece is not convex");
-  PolynomialVector<I> w;
-  if (!IsRidge(*obstacle.convex, evidence.ridge->corners, site.x, &w)) {
+  PolynomialVector<I> w, x = site.x;  // as the piece sees it
+  if (prepared_.robust.pose > 0) {
+    for (Polynomial<I>& along : x) along.c[0] = along.c[0] + PlusMinus(Moved());
+  }
+  if (!IsRidge(*obstacle.convex, evidence.ridge->corners, x, &w)) {
     return Decline("the closest point may leave the corner or edge");
   }
   KeptContact<I> kept{{}, I(0.0), model_.objects[obstacle.object].friction, site.x};
@@ -163,12 +166,12 @@ std::optional<KeptContact<I>> ContactChecker<I>::KeepOnRidge(const ContactEviden
   kept.error = Upper(bend * Inverse(least));
   PolynomialVector<I> surface;
   for (int i = 0; i < 3; ++i) {
-    surface[i] = site.x[i] - w[i];
+    surface[i] = x[i] - w[i];
     surface[i].c[0] = surface[i].c[0] + ball * kept.n[i];
     kept.point[i].c[0] = kept.point[i].c[0] - r * kept.n[i] + PlusMinus(r * kept.error);
   }
   const Guard seam = MakeGuard(surface, Upper(I(model_.contact.seam) + ball * kept.error));
-  const Guard nearer = MakeGuard(site.x, Upper(farthest));
+  const Guard nearer = MakeGuard(x, Upper(farthest));
   if (!OthersStayAway(evidence, seam, nearer, &kept)) return std::nullopt;
   return kept;
 }

@@ -16,7 +16,7 @@ namespace cguide::check {
 template <typename I>
 class EdgeChecker {
  public:
-  explicit EdgeChecker(const Model& model) : prepared_(model) {}
+  EdgeChecker(const Model& model, const Robustness& robust) : prepared_(model, robust) {}
 
   /** Empty where the proof holds, else what does not and where. */
   std::string Check(const Edge& edge, const EdgeProof& proof) {
@@ -102,6 +102,10 @@ class EdgeChecker {
   bool CheckNode(const Node& node, const Span& span, std::span<Obligation> open, bool balance_open);
   bool Holds(const Obligation& o, const PlanesOf& apart, const PlanesOf& self_apart);
   bool CheckBalance(const Balance& balance, const Span& span);
+  /** Whether the forces sum up to (v_f, v_tau) about the centre of mass, inside of the cone. */
+  bool CheckForces(const std::vector<ForceEvidence>& forces,
+                   const std::vector<KeptContact<I>>& kept, const PolynomialVector<I>& com,
+                   const IntervalVector<I>& v_f, const IntervalVector<I>& v_tau, const Span& span);
 
   Prepared<I> prepared_;
   const Edge* edge_ = nullptr;
@@ -150,8 +154,8 @@ bool EdgeChecker<I>::Holds(const Obligation& o, const PlanesOf& apart, const Pla
   const std::vector<Plane>& planes = found == given.end() ? kNone : *found->second;
   if (o.self) return AreApart(Shape(o.shape), Shape(o.other), planes);
   const Obstacle<I>& obstacle = prepared_.obstacles[o.other];
-  return IsFree(Shape(o.shape), obstacle, planes,
-                prepared_.Skin(prepared_.shapes[o.shape].body, obstacle.object));
+  const double skin = prepared_.Skin(prepared_.shapes[o.shape].body, obstacle.object);
+  return IsFree(Shape(o.shape), obstacle, planes, {skin, prepared_.robust.pose});
 }
 
 template <typename I>
@@ -170,26 +174,46 @@ bool EdgeChecker<I>::CheckBalance(const Balance& balance, const Span& span) {
   if (model.require == GuideRequirement::kContact) {
     return !kept.empty() || Refuse(span, "contact");
   }
-  if (balance.forces.size() < 6) return Refuse(span, "balance (fewer than six forces)");
   I mass;
   const PolynomialVector<I> com = CenterOfMass(model.robot, links_, &mass);
+  IntervalVector<I> v_f, v_tau{I(0.0), I(0.0), I(0.0)};
+  for (int i = 0; i < 3; ++i) v_f[i] = -(mass * I(model.gravity[i]));
+  if (!(prepared_.robust.com > 0)) {
+    return CheckForces(balance.forces, kept, com, v_f, v_tau, span);
+  }
+  const auto moments = DisplacedMoments(model.gravity, Norm(v_f), prepared_.robust.com);
+  if (balance.displaced.size() != moments.size()) {
+    return Refuse(span, "balance with the centre of mass elsewhere (" +
+                            std::to_string(moments.size()) + " lists of forces)");
+  }
+  for (std::size_t k = 0; k < moments.size(); ++k) {
+    if (!CheckForces(balance.displaced[k], kept, com, v_f, moments[k], span)) return false;
+  }
+  return true;
+}
+
+template <typename I>
+bool EdgeChecker<I>::CheckForces(const std::vector<ForceEvidence>& forces,
+                                 const std::vector<KeptContact<I>>& kept,
+                                 const PolynomialVector<I>& com, const IntervalVector<I>& v_f,
+                                 const IntervalVector<I>& v_tau, const Span& span) {
+  if (forces.size() < 6) return Refuse(span, "balance (fewer than six forces)");
   std::vector<MovingWrench<I>> wrenches;
   std::vector<Polynomial<I>> weights;
-  for (const ForceEvidence& force : balance.forces) {
+  for (const ForceEvidence& force : forces) {
     if (force.contact < 0 || force.contact >= static_cast<int>(kept.size())) {
       return Refuse(span, "the contact of a force");
     }
     const KeptContact<I>& contact = kept[force.contact];
-    if (!IsAdmissible(contact, force.u_W)) {
+    if (!IsAdmissible(contact, force.u_W, prepared_.robust.friction)) {
       return Refuse(span, "that a force stays in the friction cone of contact " +
                               std::to_string(force.contact));
     }
     wrenches.push_back(WrenchOf(contact.point - com, force.u_W));
     weights.emplace_back(I(force.w0), I(force.w1), I(0.0));
   }
-  IntervalVector<I> v_f;
-  for (int i = 0; i < 3; ++i) v_f[i] = -(mass * I(model.gravity[i]));
-  return IsInterior(wrenches, weights, v_f) || Refuse(span, "that the forces carry the robot");
+  return IsInterior(wrenches, weights, v_f, v_tau) ||
+         Refuse(span, "that the forces carry the robot");
 }
 
 template <typename I>

@@ -83,6 +83,12 @@ int Run(const Arguments& arguments) {
     for (const int edge : report.missing) std::cout << " " << edge;
     std::cout << "\n";
   }
+  const cguide::check::Robustness& box = certificate.robust;
+  if (!(box == cguide::check::Robustness{})) {
+    std::cout << "for every model with friction less by up to " << box.friction
+              << ", objects moved by up to " << box.pose << " m, centre of mass off by up to "
+              << box.com << " m:\n";
+  }
   std::cout << report.proved << " of " << report.edges << " edges proved"
             << (report.IsProved() ? "; the whole path stays in C_guide\n" : "\n");
   if (!report.refused.empty()) return kRefused;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "cguide/verify/check/certificate.h"
 #include "cguide/verify/check/solids_internal.h"
 
 namespace cguide::check {
@@ -90,6 +91,15 @@ Obstacle<I> MakeObstacle(int object, const Piece& piece) {
   return made;
 }
 
+/** Boxes that hold the piece wherever it is moved by at most `by`. */
+template <typename I>
+void Inflate(const I& by, Obstacle<I>* obstacle) {
+  if (obstacle->convex) obstacle->convex->box = Inflated(obstacle->convex->box, by);
+  if (!obstacle->mesh) return;
+  obstacle->mesh->box = Inflated(obstacle->mesh->box, by);
+  for (PlacedTriangle<I>& t : obstacle->mesh->triangles) t.box = Inflated(t.box, by);
+}
+
 /** A shape of the robot. Shapes are numbered over the links in the order of the model. */
 template <typename I>
 struct RobotShape {
@@ -102,7 +112,7 @@ struct RobotShape {
 /** The model with its constants as intervals. Borrows the model. */
 template <typename I>
 struct Prepared {
-  explicit Prepared(const Model& given) : model(&given) {
+  explicit Prepared(const Model& given, const Robustness& box = {}) : model(&given), robust(box) {
     for (const Joint& joint : given.robot.joints) joints.push_back(Lifted<I>(joint));
     for (std::size_t l = 0; l < given.robot.links.size(); ++l) {
       for (const LinkShape& shape : given.robot.links[l].shapes) {
@@ -115,6 +125,7 @@ struct Prepared {
     for (std::size_t o = 0; o < given.objects.size(); ++o) {
       for (const Piece& piece : given.objects[o].pieces) {
         obstacles.push_back(MakeObstacle<I>(static_cast<int>(o), piece));
+        if (robust.pose > 0) Inflate(I(robust.pose), &obstacles.back());
       }
     }
     may_touch = given.contact.may_touch;
@@ -129,6 +140,7 @@ struct Prepared {
   }
 
   const Model* model;
+  Robustness robust;
   std::vector<ConstantJoint<I>> joints;
   std::vector<RobotShape<I>> shapes;
   std::vector<Obstacle<I>> obstacles;

@@ -14,21 +14,29 @@ I HighestOf(const PlacedMesh<I>& mesh, const PlacedTriangle<I>& t, const Interva
   return Upper(Join(Dot(n, v[t.vertex[0]]), Join(Dot(n, v[t.vertex[1]]), Dot(n, v[t.vertex[2]]))));
 }
 
-/** A moving shape keeps above n.x = offset, or does so after a translation along n of less than
- `skin`. */
+/** How far a shape may get into a piece, and how far the piece itself may be from its place. */
+struct Slack {
+  double skin = 0;
+  double pose = 0;
+};
+
+/** A moving shape keeps above n.x = offset wherever the plane is moved by at most `pose`, or does
+ so after a translation along n of less than `skin`. */
 template <typename I>
-bool IsAbove(const MovingSet<I>& shape, const IntervalVector<I>& n, const I& offset, double skin) {
+bool IsAbove(const MovingSet<I>& shape, const IntervalVector<I>& n, const I& offset,
+             const Slack& slack) {
   I lowest = LowestOver(shape, n, Polynomial<I>(offset));
-  if (skin > 0) lowest = lowest + I(skin) * Lower(Norm(n));
+  if (slack.skin > 0) lowest = lowest + I(slack.skin) * Lower(Norm(n));
+  if (slack.pose > 0) lowest = lowest - I(slack.pose) * Upper(Norm(n));
   return IsPositive(lowest);
 }
 
 template <typename I>
 bool IsFreeOfMesh(const MovingSet<I>& shape, const PlacedMesh<I>& mesh,
-                  const std::vector<Plane>& planes, double skin) {
+                  const std::vector<Plane>& planes, const Slack& slack) {
   if (mesh.triangles.empty() || Apart(shape.box, mesh.box)) return true;
   for (const Plane& plane : planes) {
-    if (!IsAbove(shape, Lifted<I>(plane.n), I(plane.m0), skin)) return false;
+    if (!IsAbove(shape, Lifted<I>(plane.n), I(plane.m0), slack)) return false;
   }
   for (const PlacedTriangle<I>& t : mesh.triangles) {
     if (Apart(shape.box, t.box)) continue;
@@ -45,17 +53,18 @@ bool IsFreeOfMesh(const MovingSet<I>& shape, const PlacedMesh<I>& mesh,
  longer be the one it had at s = 0. */
 template <typename I>
 bool IsFree(const MovingSet<I>& shape, const Obstacle<I>& obstacle,
-            const std::vector<Plane>& planes, double skin) {
+            const std::vector<Plane>& planes, const Slack& slack) {
   if (obstacle.halfspace) {
-    return IsAbove(shape, obstacle.halfspace->normal, obstacle.halfspace->offset, skin);
+    return IsAbove(shape, obstacle.halfspace->normal, obstacle.halfspace->offset, slack);
   }
   if (obstacle.mesh) {
-    return IsFreeOfMesh(shape, *obstacle.mesh, planes, obstacle.mesh->solid ? 0 : skin);
+    const Slack strict{0, slack.pose};
+    return IsFreeOfMesh(shape, *obstacle.mesh, planes, obstacle.mesh->solid ? strict : slack);
   }
   if (Apart(shape.box, obstacle.convex->box)) return true;
   return std::any_of(planes.begin(), planes.end(), [&](const Plane& plane) {
     const IntervalVector<I> n = Lifted<I>(plane.n);
-    return IsAbove(shape, n, HighestOf(*obstacle.convex, n), skin);
+    return IsAbove(shape, n, HighestOf(*obstacle.convex, n), slack);
   });
 }
 

@@ -10,6 +10,7 @@
 #include "cguide/verify/ci_report.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
+#include "cguide/verify/cli/robust_option.h"
 #include "cguide/verify/cli/subject.h"
 #include "cguide/verify/cli/version.h"
 #include "cguide/verify/critical_friction.h"
@@ -82,10 +83,12 @@ std::vector<check::EdgeProof> KnownProofs(const AuditArguments& arguments, const
     throw Error(e.code(), arguments.certificate + ": " + e.what() + "; remove it to begin anew");
   }
   if (!(known.model == subject.problem.model) || known.path.waypoints != subject.path.waypoints ||
-      known.path.joint_names != subject.path.joint_names) {
+      known.path.joint_names != subject.path.joint_names ||
+      !(known.robust == ParseRobustness(arguments.robust))) {
     throw Error(Error::Code::kBadInput,
                 arguments.certificate +
-                    ": it is about another model or path; remove it or name another file");
+                    ": it is about another model, box of models or path; remove it or name another "
+                    "file");
   }
   return std::move(known.proofs);
 }
@@ -95,6 +98,7 @@ int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
   ProgressLine progress(arguments.common);
   verify::WholeAuditOptions options;
   options.threads = ThreadCount(arguments.common);
+  options.robust = ParseRobustness(arguments.robust);
   options.known = KnownProofs(arguments, subject);
   options.interrupt = &InterruptFlag();
   options.on_progress = [&](int done, int edges) {
@@ -108,8 +112,9 @@ int AuditWholeEdges(const AuditArguments& arguments, const Subject& subject,
       if (edge.proof) proofs.push_back(&*edge.proof);
     }
     const std::string tool = std::string("cguide ") + kVersion;
-    numeric::io::WriteFileAtomically(arguments.certificate,
-                                     verify::WriteCertificate(model, subject.path, tool, proofs));
+    numeric::io::WriteFileAtomically(
+        arguments.certificate,
+        verify::WriteCertificate(model, subject.path, tool, proofs, audit.robust));
   }
   Deliver(arguments, ForMachines(arguments)       ? CiReport(arguments, about, model, audit)
                      : arguments.format == "json" ? verify::WriteWholeJson(about, model, audit)

@@ -40,6 +40,7 @@ struct PlanArguments {
   long iteration_limit = 10'000'000;
   std::string edges = "proved";  ///< proved, sampled
   std::string certificate;       ///< file that takes the proofs, or empty
+  std::string robust;            ///< "mu=0.05,pose_mm=2,com_mm=5": of every model in the box
   double edge_step = 0.005;
   double extension = 0;  ///< 0: the planner's default
   int shortcut_rounds = 120;
@@ -57,6 +58,7 @@ struct AuditArguments {
   std::string certificate;      ///< file that takes the proofs, or empty
   bool resume = false;          ///< take the proofs that `certificate` has
   std::string critical;         ///< "mu": ask how much friction the path needs
+  std::string robust;           ///< "mu=0.05,pose_mm=2,com_mm=5": prove a box of models
 };
 
 struct StabilityArguments {

@@ -5,6 +5,7 @@
 #include "cguide/exact/core/error.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
+#include "cguide/verify/cli/robust_option.h"
 #include "cguide/verify/cli/version.h"
 
 namespace cguide::cli {
@@ -50,6 +51,9 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
       ->capture_default_str();
   c->add_option("--certificate", a->certificate,
                 "File that takes the proofs of the guide's edges, for cguide-check");
+  c->add_option("--robust", a->robust,
+                "mu=M,pose_mm=P,com_mm=C: take edges that are proved for every model in this box")
+      ->check(CLI::Validator(RobustnessProblem, "BOX"));
   c->add_option("--edge-step", a->edge_step, "Distance between the samples, with --edges sampled")
       ->check(CLI::Range(1e-4, 1.0))
       ->capture_default_str();
@@ -87,6 +91,12 @@ CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
       ->check(CLI::IsMember({"mu"}))
       ->excludes("--dense")
       ->excludes("--certificate");
+  c->add_option("--robust", a->robust,
+                "mu=M,pose_mm=P,com_mm=C: prove the path for every model with friction less by up "
+                "to M, objects moved by up to P and a centre of mass off by up to C millimetres")
+      ->check(CLI::Validator(RobustnessProblem, "BOX"))
+      ->excludes("--dense")
+      ->excludes("--critical");
   AddCommon(c, &a->common);
   return c;
 }

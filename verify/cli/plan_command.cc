@@ -15,6 +15,7 @@
 #include "cguide/verify/certificate_writer.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
+#include "cguide/verify/cli/robust_option.h"
 #include "cguide/verify/cli/version.h"
 #include "cguide/verify/whole_audit.h"
 
@@ -39,6 +40,7 @@ EdgeOracle MakeOracle(const PlanArguments& arguments, const World& world, numeri
   if (DecidesWholeEdges(arguments, world.model())) {
     verify::WholeOracleOptions options;
     options.space = space;
+    options.robust = ParseRobustness(arguments.robust);
     return verify::MakeWholeOracle(world, options);
   }
   return numeric::MakeSampledOracle(world, {arguments.edge_step, space});
@@ -140,7 +142,9 @@ std::string ConcludeEdges(const PlanArguments& arguments, const World& world, co
   if (!DecidesWholeEdges(arguments, model)) return "sampled(" + Short(arguments.edge_step) + ")";
   if (arguments.space == "free") return "whole, collisions only";
   const Path path{ColumnNames(model.robot), plan.result.waypoints};
-  const verify::WholeAudit audit = verify::AuditWhole(world, path, {});
+  verify::WholeAuditOptions options;
+  options.robust = ParseRobustness(arguments.robust);
+  const verify::WholeAudit audit = verify::AuditWhole(world, path, options);
   std::vector<const check::EdgeProof*> proofs;
   for (std::size_t i = 0; i < audit.edges.size(); ++i) {
     const verify::EdgeFinding& edge = audit.edges[i];
@@ -152,11 +156,13 @@ std::string ConcludeEdges(const PlanArguments& arguments, const World& world, co
   if (!arguments.certificate.empty()) {
     numeric::io::WriteFileAtomically(
         arguments.certificate,
-        verify::WriteCertificate(model, path, std::string("cguide ") + kVersion, proofs));
+        verify::WriteCertificate(model, path, std::string("cguide ") + kVersion, proofs,
+                                 audit.robust));
   }
-  return audit.verdict == Verdict::kHolds ? "proved"
-                                          : "proved " + std::to_string(proofs.size()) + " of " +
-                                                std::to_string(audit.edges.size());
+  const std::string box = arguments.robust.empty() ? "" : "(" + arguments.robust + ")";
+  return audit.verdict == Verdict::kHolds ? "proved" + box
+                                          : "proved" + box + " " + std::to_string(proofs.size()) +
+                                                " of " + std::to_string(audit.edges.size());
 }
 
 void WriteGuideFile(const PlanArguments& arguments, const Problem& problem, const Plan& plan) {
