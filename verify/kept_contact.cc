@@ -251,6 +251,7 @@ bool ContactKeeper::KeepOnFlat(const MovingSite& site, const numeric::Contact& c
   const Plane plane = PlaneOf(piece, flat.face, size);
   Model2 d = Dot<kDegree>(plane.n, site.x) - Constant<kDegree>(plane.h);
   d.r = (d.r + plane.error) * kUp;
+  const Vector2 y = site.x - d * Constant<kDegree>(plane.n);
   d.r += pose_ * kUp;
   const double lowest = LowerBound(d), highest = UpperBound(d);
   if (!(lowest > site.radius - site.skin && highest < site.radius + rules.epsilon)) return false;
@@ -258,20 +259,20 @@ bool ContactKeeper::KeepOnFlat(const MovingSite& site, const numeric::Contact& c
     return false;
   }
   kept->friction = world_.model().objects[piece.object].friction;
-  // y(t) is within the largest |d| of x(t).
-  const double reach =
-      std::max(std::abs(lowest), std::abs(highest)) + rules.seam + plane.error + 2 * pose_;
+  // The normal's error moves y by at most its share of |d|.
+  const double around = rules.seam + plane.error +
+                        plane.normal_error * std::max(std::abs(lowest), std::abs(highest)) +
+                        2 * pose_ + 64 * kUnit * size;
+  const Vector3d lower = LowerOf(y).array() - around, upper = UpperOf(y).array() + around;
   kept->evidence = {contact.site, flat.piece, check::FlatEvidence{flat.face, {}, 1}, {}, {}, {}};
   for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
     if (p == flat.piece) continue;
-    if (FartherThan(g.pieces[p], site.lower, site.upper, reach)) {
-      NoteAway(p, 0.5 * (site.lower + site.upper), reach + (site.upper - site.lower).norm(), kept);
+    if (FartherThan(g.pieces[p], lower, upper, 0)) {
+      NoteAway(p, 0.5 * (lower + upper), (upper - lower).norm(), kept);
       continue;
     }
     const bool is_mesh = g.pieces[p].kind == PieceKind::kMesh;
-    const bool allowed =
-        is_mesh ? TrianglesAllow(flat, p, site.lower.array() - reach, site.upper.array() + reach)
-                : LiesBehind(flat, p, -1);
+    const bool allowed = is_mesh ? TrianglesAllow(flat, p, lower, upper) : LiesBehind(flat, p, -1);
     if (!allowed) return false;
     kept->friction = std::min(kept->friction, world_.model().objects[g.pieces[p].object].friction);
   }

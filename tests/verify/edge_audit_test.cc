@@ -4,62 +4,18 @@
 
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/verify/certificate_writer.h"
-#include "tests/numeric/geometry_models.h"
+#include "tests/verify/sliding_foot.h"
 
 namespace cguide::verify {
 namespace {
 
 using Eigen::Vector3d;
 using numeric::World;
-
-/** A heavy base over a flat foot, 0.2 m x 0.1 m, that slides along x with sites at the corners of
- its sole, 5 mm above the plane z = 0. */
-Model FootOver(std::vector<Object> ground) {
-  Model model;
-  model.robot.links.resize(2);
-  model.robot.links[0] = {.name = "base", .mass = 50};
-  model.robot.links[1] = {.name = "foot", .joint = 0, .mass = 0};
-  model.robot.links[1].shapes.push_back({{}, Box{{0.2, 0.1, 0.04}}});
-  Joint joint{.name = "slide", .type = JointType::kPrismatic, .parent = 0, .child = 1};
-  joint.X_PJ.p = {0, 0, -0.8};
-  joint.lower = -1;
-  joint.upper = 1;
-  model.robot.joints.push_back(joint);
-  AssignBodiesAndColumns(&model.robot);
-  for (const double x : {0.1, -0.1}) {
-    for (const double y : {0.05, -0.05}) model.sites.push_back({1, {x, y, -0.02}, 0});
-  }
-  model.contact.bodies = {1};
-  model.objects = std::move(ground);
-  return model;
-}
-
-Edge Slide(double from, double to) {
-  Edge edge{test::At({0, 0, 0.825}), test::At({0, 0, 0.825})};
-  edge.from.joints = Eigen::VectorXd::Constant(1, from);
-  edge.to.joints = Eigen::VectorXd::Constant(1, to);
-  return edge;
-}
-
-/** A sheet over [-1, 1]^2 at z = 0, its four triangles meeting at the origin. */
-Surface Sheet() {
-  return {{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0}},
-          {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};
-}
-
-std::vector<Vector3d> SlabVertices() {
-  std::vector<Vector3d> v;
-  for (const double z : {-0.1, 0.0}) {
-    for (const double y : {-1.0, 1.0}) {
-      for (const double x : {-1.0, 1.0}) v.emplace_back(x, y, z);
-    }
-  }
-  return v;
-}
-
-const std::vector<std::array<int, 3>> kSlabFaces = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
-                                                    {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
-                                                    {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+using test::kSlabFaces;
+using test::Sheet;
+using test::SlabVertices;
+using test::Slide;
+using test::SlidingFoot;
 
 EdgeFinding Audit(const Model& model, const Edge& edge) {
   const World world(model);
@@ -84,7 +40,7 @@ TEST_CASE("A foot is proved on whatever the ground is made of, and refuted where
   };
   for (const auto& [name, ground] : grounds) {
     CAPTURE(name);
-    const Model model = FootOver(ground);
+    const Model model = SlidingFoot(ground);
     const EdgeFinding under = Audit(model, Slide(-0.06, 0.07));
     CHECK(under.refusal == "");
     CHECK(under.proof);
@@ -102,7 +58,7 @@ TEST_CASE("A foot on two rails and on the edges of hulls is proved with turning 
                                test::OneObject("right", shape, {{0, -0.062, z}, {}})};
   };
   const PieceShape box = Box{{2, 0.02, 0.02}};
-  CHECK(Audit(FootOver(rails(box, -0.01)), Slide(-0.02, 0.03)).proof);
+  CHECK(Audit(SlidingFoot(rails(box, -0.01)), Slide(-0.02, 0.03)).proof);
   Hull hull;
   for (const double z : {-0.01, 0.01}) {
     for (const double y : {-0.01, 0.01}) {
@@ -110,11 +66,11 @@ TEST_CASE("A foot on two rails and on the edges of hulls is proved with turning 
     }
   }
   hull.faces = kSlabFaces;
-  CHECK(Audit(FootOver(rails(hull, -0.01)), Slide(-0.02, 0.03)).proof);
+  CHECK(Audit(SlidingFoot(rails(hull, -0.01)), Slide(-0.02, 0.03)).proof);
 }
 
 TEST_CASE("Contact alone is proved with one site") {
-  Model model = FootOver({test::OneObject("sheet", Sheet())});
+  Model model = SlidingFoot({test::OneObject("sheet", Sheet())});
   model.require = GuideRequirement::kContact;
   const EdgeFinding finding = Audit(model, Slide(0, 0.3));
   REQUIRE(finding.proof);
@@ -123,7 +79,7 @@ TEST_CASE("Contact alone is proved with one site") {
 
 TEST_CASE("An edge that starts inside a solid, or whose shapes pass through it, has no proof") {
   const std::vector<Vector3d> slab = SlabVertices();
-  Model model = FootOver({test::OneObject("slab", Solid{slab, kSlabFaces})});
+  Model model = SlidingFoot({test::OneObject("slab", Solid{slab, kSlabFaces})});
   Edge inside = Slide(0, 0.05);
   inside.from.X_WB.p.z() = inside.to.X_WB.p.z() = 0.75;  // the foot is within the slab
   CHECK(!Audit(model, inside).proof);
@@ -133,7 +89,7 @@ TEST_CASE("An edge that starts inside a solid, or whose shapes pass through it, 
 }
 
 TEST_CASE("The oracle of whole edges agrees with the audit, in several threads") {
-  const World world(FootOver({test::OneObject("floor", Halfspace{{0, 0, 1}, 0})}));
+  const World world(SlidingFoot({test::OneObject("floor", Halfspace{{0, 0, 1}, 0})}));
   const EdgeOracle oracle = MakeWholeOracle(world, {});
   CHECK(oracle(Slide(-0.05, 0.05)) == Verdict::kHolds);
   CHECK(oracle(Slide(0, 0.15)) != Verdict::kHolds);
@@ -148,7 +104,7 @@ TEST_CASE("The oracle of whole edges agrees with the audit, in several threads")
 }
 
 TEST_CASE("Nearest contacts are never proved") {
-  Model model = FootOver({test::OneObject("floor", Halfspace{{0, 0, 1}, 0})});
+  Model model = SlidingFoot({test::OneObject("floor", Halfspace{{0, 0, 1}, 0})});
   model.contact.model = ContactModel::kNearest;
   const EdgeFinding finding = Audit(model, Slide(0, 0.01));
   CHECK(VerdictOf(finding) == Verdict::kUndecided);

@@ -5,7 +5,7 @@
 
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/numeric/membership.h"
-#include "tests/numeric/geometry_models.h"
+#include "tests/verify/sliding_foot.h"
 
 namespace cguide::verify {
 namespace {
@@ -13,6 +13,8 @@ namespace {
 using Rng = std::mt19937_64;
 using numeric::World;
 using test::Between;
+using test::Slide;
+using test::SlidingFoot;
 
 /** Whether some of the samples provably lacks contact or balance. */
 bool FailsSomewhere(const World& world, const Edge& edge, Rng& rng, int samples) {
@@ -23,35 +25,6 @@ bool FailsSomewhere(const World& world, const Edge& edge, Rng& rng, int samples)
     if (TestPlacedStability(world, &workspace).verdict == Verdict::kFails) return true;
   }
   return false;
-}
-
-/** A heavy base without shape over the origin, and a flat foot 0.2 m x 0.1 m below it that slides
- along x; sites at the corners of the sole, 5 mm above the floor. */
-Model SlidingFoot(double friction) {
-  Model model;
-  model.robot.links.resize(2);
-  model.robot.links[0] = {.name = "base", .mass = 50};
-  model.robot.links[1] = {.name = "foot", .joint = 0, .mass = 0};
-  model.robot.links[1].shapes.push_back({{}, Box{{0.2, 0.1, 0.04}}});
-  Joint joint{.name = "slide", .type = JointType::kPrismatic, .parent = 0, .child = 1};
-  joint.X_PJ.p = {0, 0, -0.8};
-  joint.lower = -1;
-  joint.upper = 1;
-  model.robot.joints.push_back(joint);
-  AssignBodiesAndColumns(&model.robot);
-  for (const double x : {0.1, -0.1}) {
-    for (const double y : {0.05, -0.05}) model.sites.push_back({1, {x, y, -0.02}, 0});
-  }
-  model.contact.bodies = {1};
-  model.objects.push_back(test::OneObject("floor", Halfspace{{0, 0, 1}, 0}, {}, friction));
-  return model;
-}
-
-Edge Slide(double from, double to) {
-  Edge edge{test::At({0, 0, 0.825}), test::At({0, 0, 0.825})};
-  edge.from.joints = Eigen::VectorXd::Constant(1, from);
-  edge.to.joints = Eigen::VectorXd::Constant(1, to);
-  return edge;
 }
 
 EdgeStability Decide(const Model& model, const Edge& edge) {

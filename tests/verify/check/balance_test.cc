@@ -107,7 +107,7 @@ std::vector<Polynomial<Interval>> Weights(const std::vector<double>& w, double s
 
 bool Interior(const Wrenches& wrenches, const std::vector<Polynomial<Interval>>& weights,
               const Vector3d& v) {
-  return IsInterior(wrenches, weights, Lifted<Interval>(v));
+  return IsInterior(wrenches, weights, Lifted<Interval>(v), Lifted<Interval>(Vector3d(0, 0, 0)));
 }
 
 }  // namespace

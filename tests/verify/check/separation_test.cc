@@ -167,7 +167,7 @@ TEST_CASE("What is accepted as free of a piece never meets it, and separated sha
       }
       planes[0].m0 = top + 1e-12;
     }
-    const bool is_free = IsFree(*mover.set, mover.prepared->obstacles[0], planes, 0);
+    const bool is_free = IsFree(*mover.set, mover.prepared->obstacles[0], planes, {0, 0});
     const bool apart = middle.verdict == Verdict::kHolds && middle.lower > Rational(1, 25);
     separated += apart;
     accepted += is_free && apart;
@@ -192,11 +192,11 @@ TEST_CASE("A skin allows less than itself, not more, and none against solids") {
   const std::vector<Plane> up{{{0, 0, 2}, 1e-300, 0}};
   for (const Piece* piece : {&floor, &slab, &sheet}) {  // 1 mm deep
     const Obstacle<Interval> obstacle = MakeObstacle<Interval>(0, *piece);
-    CHECK(!IsFree(set, obstacle, up, 0));
-    CHECK(!IsFree(set, obstacle, up, 0.000999));
-    CHECK(IsFree(set, obstacle, up, 0.001001));
+    CHECK(!IsFree(set, obstacle, up, {0, 0}));
+    CHECK(!IsFree(set, obstacle, up, {0.000999, 0}));
+    CHECK(IsFree(set, obstacle, up, {0.001001, 0}));
   }
-  CHECK(!IsFree(set, MakeObstacle<Interval>(0, solid), up, 0.5));
+  CHECK(!IsFree(set, MakeObstacle<Interval>(0, solid), up, {0.5, 0}));
 }
 
 TEST_CASE("Of a mesh every plane is below the shape and every triangle below a plane") {
@@ -213,14 +213,14 @@ TEST_CASE("Of a mesh every plane is below the shape and every triangle below a p
   const Piece piece{{}, corner};
   const Obstacle<Interval> obstacle = MakeObstacle<Interval>(0, piece);
   const Plane floor{{1, 0, 1}, -0.22, 0}, wall{{-1, 0, 1}, -0.22, 0};
-  CHECK(IsFree(set, obstacle, {floor, wall}, 0));
-  CHECK(!IsFree(set, obstacle, {floor}, 0));
-  CHECK(!IsFree(set, obstacle, {wall}, 0));
-  CHECK(!IsFree(set, obstacle, {}, 0));
+  CHECK(IsFree(set, obstacle, {floor, wall}, {0, 0}));
+  CHECK(!IsFree(set, obstacle, {floor}, {0, 0}));
+  CHECK(!IsFree(set, obstacle, {wall}, {0, 0}));
+  CHECK(!IsFree(set, obstacle, {}, {0, 0}));
   const Plane through{{1, 0, 1}, 0.05, 0};
-  CHECK(!IsFree(set, obstacle, {through, wall}, 0));
-  CHECK(!IsFree(set, obstacle, {{{0, 0, 0}, 0, 0}}, 0));
-  CHECK(!IsFree(set, obstacle, {{{0, 0, 0}, -1, 0}}, 0));
+  CHECK(!IsFree(set, obstacle, {through, wall}, {0, 0}));
+  CHECK(!IsFree(set, obstacle, {{{0, 0, 0}, 0, 0}}, {0, 0}));
+  CHECK(!IsFree(set, obstacle, {{{0, 0, 0}, -1, 0}}, {0, 0}));
 }
 
 TEST_CASE("Two moving shapes are parted by a plane that moves with them, not by a fixed one") {
