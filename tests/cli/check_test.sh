@@ -63,6 +63,18 @@ sed 's/0.04/0.040/' "$work/model.json" >"$work/other.json"
 expect 1 "$certificates/block.json" --model "$work/other.json"
 expect 3 "$certificates/block.json" --model "$work/none.json"
 
+# 0 and 1: for every model in a box
+altered '"tool"' '"robust": {"friction": 0.5, "pose": 0.0099, "com": 1}, "tool"'
+expect 0 "$work/altered.json"
+says "for every model with friction less by up to 0.5, objects moved by up to 0.0099 m"
+altered '"tool"' '"robust": {"friction": 0.5, "pose": 0.0101, "com": 1}, "tool"'
+expect 1 "$work/altered.json"
+altered '"tool"' '"robust": {"friction": 0, "pose": -1, "com": 0}, "tool"'
+expect 3 "$work/altered.json"
+says "/robust/pose"
+altered '"tool"' '"robust": {"pose": 0}, "tool"'
+expect 3 "$work/altered.json"
+
 # 1: refused, with edge and reason
 altered '[-1, -1, 0]' '[1, -1, 0]'
 expect 1 "$work/altered.json"

@@ -76,6 +76,16 @@ section_main_job() {
   says "edges proved for every s"
   cmp -s "$work/planned.cert" "$work/audited.cert" || fail "plan and audit write different certificates"
   expect 2 audit "$work/guide.json" --dense 0.005 --certificate "$work/x.cert"
+  # Boxes of models: no wider than the guide bears, named in reports and certificates.
+  expect 0 audit "$work/guide.json" --robust com_mm=0,mu=0.001 --certificate "$work/box.cert"
+  says "friction less by up to 0.001"
+  grep -q '"robust": {"friction":0.001,"pose":0,"com":0}' "$work/box.cert" || fail "no box in the certificate"
+  expect 4 audit "$work/guide.json" --robust com_mm=500 --format json
+  says '"com_m": 0.5'
+  expect 3 audit "$work/guide.json" --certificate "$work/box.cert" --resume
+  for box in mu mu=x mu=-1 mu=nan mu=1,mu=1 yaw=1 ""; do expect 2 audit "$work/guide.json" --robust "$box"; done
+  expect 2 audit "$work/guide.json" --robust mu=0.1 --dense 0.01
+  expect 2 audit "$work/guide.json" --robust mu=0.1 --critical mu
   # A partial certificate is completed to the same bytes; one of another path is refused.
   grep -v '^{"edge":1,' "$work/audited.cert" >"$work/partial.cert"
   expect 0 audit "$work/guide.json" --certificate "$work/partial.cert" --resume
