@@ -92,7 +92,7 @@ section_main_job() {
   cmp -s "$work/partial.cert" "$work/audited.cert" || fail "a resumed audit writes another certificate"
   expect 0 plan "$a1" -o "$work/other.json" --seed 4
   expect 3 audit "$work/other.json" --certificate "$work/audited.cert" --resume
-  says "another model or path"
+  says "another model, box of models or path"
   head -c 5000 "$work/audited.cert" >"$work/cut.cert"
   expect 3 audit "$work/guide.json" --certificate "$work/cut.cert" --resume
   says "cut.cert"
