@@ -34,16 +34,53 @@ struct Task {
   std::vector<Item> items;
 };
 
+/** n.x over a placed convex set, at most; |n| <= 1 + 8 u. The rounding of this line is within
+ s.error (item 4 at PlacementError). */
+double HighestStatic(const Convex& s, const Vector3d& n) {
+  return n.dot(s.c) + numeric::CoreExtent(s, n) + s.radius * (1 + 16 * kUnit) +
+         s.error * (1 + 16 * kUnit);
+}
+
+/** Box around a placed convex set, rounded outwards. */
+void StaticBox(const Convex& s, Vector3d* lower, Vector3d* upper) {
+  for (int i = 0; i < 3; ++i) {
+    (*upper)[i] = HighestStatic(s, Vector3d::Unit(i));
+    (*lower)[i] = -HighestStatic(s, -Vector3d::Unit(i));
+  }
+}
+
+std::vector<Item> AllItems(const Geometry& g) {
+  std::vector<Item> items;
+  for (int s = 0; s < static_cast<int>(g.shapes.size()); ++s) {
+    for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) items.push_back({s, p, false});
+  }
+  for (const auto& [i, j] : g.self_pairs) {
+    for (int s = g.body_begin[i]; s < g.body_begin[i + 1]; ++s) {
+      for (int t = g.body_begin[j]; t < g.body_begin[j + 1]; ++t) items.push_back({s, t, true});
+    }
+  }
+  return items;
+}
+
 }  // namespace
 
 struct EdgeWorkspace::Scratch {
-  explicit Scratch(const World& world) : point(world), numbers(CertificateShapes(world)) {}
+  explicit Scratch(const World& world)
+      : point(world), all(AllItems(world.geometry())), numbers(CertificateShapes(world)) {
+    for (const ObstaclePiece& piece : world.geometry().pieces) {
+      auto& [lower, upper] = boxes.emplace_back(Vector3d::Zero(), Vector3d::Zero());
+      if (piece.kind == PieceKind::kConvex) StaticBox(piece.convex, &lower, &upper);
+    }
+  }
   numeric::Workspace point;
   TaylorState<kDegree> state;
   std::vector<MovingShape> shapes;
-  std::vector<long> stamp;  ///< leaf for which a shape was moved last
+  std::vector<Convex> middles;  ///< of them
+  std::vector<long> stamp;      ///< leaf for which a shape was moved last
   std::deque<Task> tasks;
-  std::vector<int> numbers;  ///< of shapes in certificates
+  std::vector<Item> all;
+  std::vector<std::pair<Vector3d, Vector3d>> boxes;  ///< of convex pieces, rounded outwards
+  std::vector<int> numbers;                          ///< of shapes in certificates
   numeric::StageCounts counts;
 };
 
@@ -54,24 +91,9 @@ EdgeWorkspace& EdgeWorkspace::operator=(EdgeWorkspace&&) noexcept = default;
 
 namespace {
 
-/** n.x over a placed convex set, at most; |n| <= 1 + 8 u. The rounding of this line is within
- s.error (item 4 at PlacementError). */
-double HighestStatic(const Convex& s, const Vector3d& n) {
-  return n.dot(s.c) + numeric::CoreExtent(s, n) + s.radius * (1 + 16 * kUnit) +
-         s.error * (1 + 16 * kUnit);
-}
-
 bool BoxesApart(const Vector3d& lower, const Vector3d& upper, const Vector3d& other_lower,
                 const Vector3d& other_upper) {
   return (lower.array() > other_upper.array()).any() || (other_lower.array() > upper.array()).any();
-}
-
-/** Box around a placed convex set, rounded outwards. */
-void StaticBox(const Convex& s, Vector3d* lower, Vector3d* upper) {
-  for (int i = 0; i < 3; ++i) {
-    (*upper)[i] = HighestStatic(s, Vector3d::Unit(i));
-    (*lower)[i] = -HighestStatic(s, -Vector3d::Unit(i));
-  }
 }
 
 class Decider {
@@ -83,18 +105,21 @@ class Decider {
   EdgeCollision Run();
 
  private:
-  std::vector<Item> AllItems() const;
   Pair PairOf(const Item& item) const;
   double Skin(const Item& item) const;
   const MovingShape& Shape(int index);
 
   bool Holds(Item* item);
-  bool HoldsStatic(const MovingShape& a, const Convex& b, double skin, Item* item);
+  bool HoldsStatic(const MovingShape& a, const Convex& middle, const Convex& b, double skin,
+                   Item* item);
   bool HoldsMoving(const MovingShape& a, const MovingShape& b, Item* item);
-  bool HoldsMesh(const MovingShape& a, const numeric::Mesh& mesh, double skin);
+  bool HoldsMesh(const MovingShape& a, const Convex& middle, const numeric::Mesh& mesh,
+                 double skin);
   bool HoldsHalfspace(const MovingShape& a, const ObstaclePiece& piece, double skin);
   bool Above(const MovingShape& a, double offset, double skin, const Vector3d& n);
   bool Between(const MovingShape& a, const MovingShape& b, const Vector3d& n);
+  bool HasSolids() const;
+  bool StartIsFree();
   void NoteSides();
   void Note(const Item& item);
 
@@ -112,19 +137,6 @@ class Decider {
   std::vector<check::Plane> planes_;  ///< that settled the item at hand; empty: its boxes did
 };
 
-std::vector<Item> Decider::AllItems() const {
-  std::vector<Item> items;
-  for (int s = 0; s < static_cast<int>(g_.shapes.size()); ++s) {
-    for (int p = 0; p < static_cast<int>(g_.pieces.size()); ++p) items.push_back({s, p, false});
-  }
-  for (const auto& [i, j] : g_.self_pairs) {
-    for (int s = g_.body_begin[i]; s < g_.body_begin[i + 1]; ++s) {
-      for (int t = g_.body_begin[j]; t < g_.body_begin[j + 1]; ++t) items.push_back({s, t, true});
-    }
-  }
-  return items;
-}
-
 Pair Decider::PairOf(const Item& item) const {
   const int other = item.self ? g_.shapes[item.other].body : g_.pieces[item.other].object;
   return {g_.shapes[item.shape].body, other, item.self};
@@ -138,6 +150,7 @@ const MovingShape& Decider::Shape(int index) {
   if (x_.stamp[index] != result_.leaves) {
     const numeric::BodyShape& shape = g_.shapes[index];
     x_.shapes[index] = Move(shape, x_.state.X_WB[shape.body]);
+    x_.middles[index] = AtMiddle(x_.shapes[index]);
     x_.stamp[index] = result_.leaves;
   }
   return x_.shapes[index];
@@ -193,24 +206,31 @@ bool AnyDirection(const Convex& a, const Convex& b, Item* item, const Test& test
   return !gjk.overlap && length > 0 && good(gjk.v / length);
 }
 
-bool Decider::HoldsStatic(const MovingShape& a, const Convex& b, double skin, Item* item) {
-  return AnyDirection(AtMiddle(a), b, item,
+bool Decider::HoldsStatic(const MovingShape& a, const Convex& middle, const Convex& b, double skin,
+                          Item* item) {
+  return AnyDirection(middle, b, item,
                       [&](const Vector3d& n) { return Above(a, HighestStatic(b, n), skin, n); });
 }
 
 bool Decider::HoldsMoving(const MovingShape& a, const MovingShape& b, Item* item) {
-  return AnyDirection(AtMiddle(a), AtMiddle(b), item,
+  return AnyDirection(x_.middles[item->shape], x_.middles[item->other], item,
                       [&](const Vector3d& n) { return Between(a, b, n); });
 }
 
 bool Decider::HoldsHalfspace(const MovingShape& a, const ObstaclePiece& piece, double skin) {
   const double reach = a.lower.cwiseAbs().cwiseMax(a.upper.cwiseAbs()).sum();
+  // Three products and two sums over the box, |n| <= 1 + 8 u: within 8 u of its reach.
+  const Vector3d& n = piece.normal;
+  const double lowest = n.cwiseProduct(a.lower).cwiseMin(n.cwiseProduct(a.upper)).sum();
+  const double error = 8 * kUnit * reach + numeric::HalfspaceError(piece, reach);
+  if (lowest - piece.offset > (options_.pose + error) * kUp) return true;
   return Above(a, piece.offset + numeric::HalfspaceError(piece, reach), skin, piece.normal);
 }
 
 // Triangles whose box the shape's box does not meet cannot touch it, nor can those behind a plane
 // that served for another one.
-bool Decider::HoldsMesh(const MovingShape& a, const numeric::Mesh& mesh, double skin) {
+bool Decider::HoldsMesh(const MovingShape& a, const Convex& middle, const numeric::Mesh& mesh,
+                        double skin) {
   if (mesh.nodes.empty()) return true;
   const Vector3d margin = Vector3d::Constant((mesh.error + options_.pose) * kUp);
   std::vector<int> open{0};
@@ -236,7 +256,7 @@ bool Decider::HoldsMesh(const MovingShape& a, const numeric::Mesh& mesh, double 
         none.n_W = normal.normalized();
         if (none.n_W.dot(a.c.c[0].head<3>().matrix() - triangle.c) < 0) none.n_W = -none.n_W;
       }
-      if (!HoldsStatic(a, triangle, skin, &none)) return false;
+      if (!HoldsStatic(a, middle, triangle, skin, &none)) return false;
     }
   }
   return true;
@@ -257,17 +277,17 @@ bool Decider::Holds(Item* item) {
     case PieceKind::kMesh:
       // With a skin a shape thinner than it could pass through the triangles of a solid unseen, and
       // its side would no longer be that at s = 0: solids are kept strictly apart.
-      return HoldsMesh(a, *piece.mesh, piece.mesh->solid ? 0 : skin);
+      return HoldsMesh(a, x_.middles[item->shape], *piece.mesh, piece.mesh->solid ? 0 : skin);
     case PieceKind::kConvex:
       break;
   }
-  Vector3d lower, upper;
-  StaticBox(piece.convex, &lower, &upper);
+  auto [lower, upper] = x_.boxes[item->other];
   if (options_.pose > 0) {
     lower = lower.array() - options_.pose * kUp - kUnit * lower.array().abs();
     upper = upper.array() + options_.pose * kUp + kUnit * upper.array().abs();
   }
-  return BoxesApart(a.lower, a.upper, lower, upper) || HoldsStatic(a, piece.convex, skin, item);
+  return BoxesApart(a.lower, a.upper, lower, upper) ||
+         HoldsStatic(a, x_.middles[item->shape], piece.convex, skin, item);
 }
 
 /** A moving shape at one s as a placed set: its remainders, which then hold rounding alone, become
@@ -351,22 +371,34 @@ void Decider::Split(const Leaf& leaf, std::vector<Item> items) {
   x_.tasks.push_back({{leaf.middle + half, half}, std::move(items)});
 }
 
-EdgeCollision Decider::Run() {
-  // The first waypoint settles on which side of solids the robot starts.
+bool Decider::HasSolids() const {
+  return std::any_of(g_.pieces.begin(), g_.pieces.end(), [](const ObstaclePiece& piece) {
+    return piece.kind == PieceKind::kMesh && piece.mesh->solid;
+  });
+}
+
+// Else says so in the result.
+bool Decider::StartIsFree() {
   numeric::Place(world_, edge_.from, &x_.point);
   const numeric::FreeAnswer start = numeric::TestFree(world_, &x_.point);
-  if (start.verdict != Verdict::kHolds) {
-    result_.verdict = start.verdict;
-    result_.pair = start.first;
-    return result_;
-  }
+  if (start.verdict == Verdict::kHolds) return true;
+  result_.verdict = start.verdict;
+  result_.pair = start.first;
+  result_.s = 0;
+  return false;
+}
+
+EdgeCollision Decider::Run() {
+  // The first waypoint settles on which side of solids the robot starts.
+  if (HasSolids() && !StartIsFree()) return result_;
   x_.shapes.resize(g_.shapes.size());
+  x_.middles.resize(g_.shapes.size());
   x_.stamp.assign(g_.shapes.size(), -1);
   NoteSides();
   // Wide leaves first: their middles find a deep meeting before narrow ones close in on the instant
   // at which it begins, where nothing is certain.
   x_.tasks.clear();
-  x_.tasks.push_back({{0.5, 0.5}, AllItems()});
+  x_.tasks.push_back({{0.5, 0.5}, x_.all});
   while (!x_.tasks.empty()) {
     Task task = std::move(x_.tasks.front());
     x_.tasks.pop_front();
@@ -378,6 +410,7 @@ EdgeCollision Decider::Run() {
     EvaluateEdge<kDegree>(world_.tree(), edge_, task.leaf, &x_.state);
     std::vector<Item> open;
     leaf_ = task.leaf;
+    open.reserve(task.items.size());
     for (Item& item : task.items) {
       if (Holds(&item)) {
         Note(item);
@@ -393,6 +426,8 @@ EdgeCollision Decider::Run() {
       return result_;
     }
     if (task.leaf.half <= options_.shortest || result_.leaves >= options_.max_leaves) {
+      // Middles of leaves never are the start itself, where two may touch.
+      if (!StartIsFree()) return result_;
       result_.verdict = Verdict::kUndecided;
       result_.pair = PairOf(open.front());
       result_.s = task.leaf.middle;

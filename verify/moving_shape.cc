@@ -73,14 +73,31 @@ double LowestOverCylinder(const Projected& p, const Vector3d& half) {
   return lowest;
 }
 
+/** Where n.A_j keeps its sign over the leaf, no corner on the higher side of that axis is lowest.
+ */
+double LowestOverBox(const Projected& p, const Vector3d& half) {
+  int fixed = 0, low = 0;  // bits by axis, as in Corner
+  for (int j = 0; j < 3; ++j) {
+    const Model2& a = p.a[j];
+    const double change = (std::abs(a.c[1]) + std::abs(a.c[2]) + a.r) * kUp;
+    if (!(std::abs(a.c[0]) > change)) continue;
+    fixed |= 1 << j;
+    low |= a.c[0] < 0 ? 1 << j : 0;
+  }
+  double lowest = INFINITY;
+  for (int i = 0; i < 8; ++i) {
+    if ((i & fixed) == low) lowest = Least(lowest, LowerBound(Vertex(p, Corner(half, i))));
+  }
+  return lowest;
+}
+
 double LowestOverCore(const MovingShape& shape, const MovingPlane& plane) {
   const Projected p = Project(shape, plane);
   const Convex& s = *shape.local;
   double lowest = INFINITY;
   switch (s.kind) {
     case CoreKind::kBox:
-      for (int i = 0; i < 8; ++i) lowest = Least(lowest, LowerBound(Vertex(p, Corner(s.half, i))));
-      return lowest;
+      return LowestOverBox(p, s.half);
     case CoreKind::kCylinder:
       return LowestOverCylinder(p, s.half);
     case CoreKind::kPoints:
