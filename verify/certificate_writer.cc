@@ -53,6 +53,7 @@ class Writer {
   void Write(const Plane& plane);
   void Planes(const std::vector<Plane>& planes);
   void Separations(const char* key, const std::vector<Separation>& list, const char** between);
+  void Write(const check::PatchEvidence& patch);
   void Write(const ContactEvidence& contact);
   void Write(const std::vector<check::ForceEvidence>& forces);
   void Write(const Balance& balance);
@@ -88,6 +89,23 @@ void Writer::Separations(const char* key, const std::vector<Separation>& list,
   *between = ",";
 }
 
+void Writer::Write(const check::PatchEvidence& patch) {
+  *this << "{\"plane\":[" << patch.n[0] << "," << patch.n[1] << "," << patch.n[2] << "," << patch.m0
+        << "],\"slack\":" << patch.slack << ",\"parts\":";
+  List(patch.parts, [this](const check::PatchPart& part) {
+    *this << "{\"piece\":" << part.piece;
+    if (part.face >= 0) *this << ",\"face\":" << part.face;
+    if (part.triangle >= 0) *this << ",\"triangle\":" << part.triangle;
+    if (!part.corners.empty()) {
+      *this << ",\"corners\":";
+      List(part.corners, [this](int i) { *this << i; });
+    }
+    if (part.until != 1) *this << ",\"until\":" << part.until;
+    *this << "}";
+  });
+  *this << "}";
+}
+
 void Writer::Write(const ContactEvidence& contact) {
   *this << "{\"site\":" << contact.site << ",\"piece\":" << contact.piece;
   if (contact.flat) {
@@ -118,6 +136,10 @@ void Writer::Write(const ContactEvidence& contact) {
   if (contact.ridge) {
     *this << ",\"ridge\":{\"corners\":";
     List(contact.ridge->corners, [this](int i) { *this << i; }) << "}";
+  }
+  if (contact.patch) {
+    *this << ",\"patch\":";
+    Write(*contact.patch);
   }
   if (!contact.apart.empty()) {
     *this << ",\"apart\":";

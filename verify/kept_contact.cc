@@ -290,6 +290,7 @@ bool ContactKeeper::Keep(const TaylorState<kDegree>& state, const numeric::Conta
   const numeric::BodySite* body_site = FindSite(g, contact);
   if (!body_site) return false;
   MovingSite site;
+  site.body = contact.body;
   site.radius = body_site->radius;
   site.skin = g.PairSkin(contact.body, contact.object);
   site.x = PointOnBody<kDegree>(state.X_WB[contact.body], body_site->x_B);
@@ -304,8 +305,9 @@ bool ContactKeeper::Keep(const TaylorState<kDegree>& state, const numeric::Conta
   const int piece = FindConvex(contact);
   const bool is_hull = piece >= 0 && g.pieces[piece].convex.kind == numeric::CoreKind::kPoints;
   if ((piece < 0 || is_hull) && KeepOnTriangles(site, contact, kept)) return true;
-  if (piece < 0) return false;
-  return KeepOnRidge(site, contact, piece, kept) || KeepOnConvex(site, contact, piece, kept);
+  if (piece >= 0 && KeepOnRidge(site, contact, piece, kept)) return true;
+  if (KeepOnPatch(site, contact, kept)) return true;
+  return piece >= 0 && KeepOnConvex(site, contact, piece, kept);
 }
 
 }  // namespace cguide::verify

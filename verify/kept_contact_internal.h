@@ -12,6 +12,13 @@
 
 namespace cguide::verify {
 
+namespace patch_internal {  // kept_patch_internal.h
+struct Plane;
+struct FootPath;
+struct Part;
+struct Bounds;
+}  // namespace patch_internal
+
 /** A flat side of an obstacle: the surface of a halfspace, a face of a box, the plane of a
  * triangle. */
 struct Flat {
@@ -64,6 +71,7 @@ class ContactKeeper {
   struct MovingSite {
     Vector2 x;
     Eigen::Vector3d lower, upper;  ///< box of x(t)
+    int body = -1;
     double radius = 0;
     double skin = 0;
     double step = 0;  ///< bound on |x(t) - x|, x the stored centre at the middle
@@ -95,6 +103,27 @@ class ContactKeeper {
   /** F on a mesh: as on a flat, for the plane of a triangle and those next to it in the same plane;
    the foot stays in their union, which is star-shaped about the first one's centroid. */
   bool KeepOnTriangles(const MovingSite& site, const numeric::Contact& contact, KeptContact* kept);
+
+  /** P: a plane that nothing near the foot is above, but for a rise of rounding or a little more,
+   with some of the obstacles near the foot for every t. The closest of them is a contact's point,
+   whose normal is nearly the plane's: lemma 10 of FORMAT.md. */
+  bool KeepOnPatch(const MovingSite& site, const numeric::Contact& contact, KeptContact* kept);
+  bool KeepOnPlane(const MovingSite& site, const numeric::Contact& contact,
+                   const Eigen::Vector3d& n, KeptContact* kept);
+  std::vector<Eigen::Vector3d> PatchNormals(const numeric::Contact& contact) const;
+  std::vector<patch_internal::Part> PatchParts(const patch_internal::FootPath& path,
+                                               const patch_internal::Plane& plane) const;
+  patch_internal::Bounds BoundParts(const std::vector<patch_internal::Part>& parts,
+                                    const std::vector<std::pair<int, double>>& chosen,
+                                    const patch_internal::FootPath& path, double rise) const;
+  double RiseNear(const patch_internal::FootPath& path, const patch_internal::Plane& plane,
+                  double reach, KeptContact* kept) const;
+  double RiseOfMesh(const patch_internal::FootPath& path, const patch_internal::Plane& plane,
+                    double reach, int piece, KeptContact* kept) const;
+  bool TriangleAway(const numeric::Mesh& mesh, int triangle, const Vector2& foot, double reach,
+                    int piece, KeptContact* kept) const;
+  double LeastSkin(const MovingSite& site, const patch_internal::FootPath& path,
+                   double reach) const;
 
   /** The plane of triangles in doubles: d = n.x - h is within error + normal_error |x|_1 of the
    real one. */

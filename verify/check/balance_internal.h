@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 
 #include "cguide/verify/check/contact_flat_internal.h"
+#include "cguide/verify/check/contact_patch_internal.h"
 #include "cguide/verify/check/contact_point_internal.h"
 
 // Static stability over a span (FORMAT.md part 6).

@@ -61,16 +61,37 @@ struct RidgeEvidence {
   std::vector<int> corners;  ///< one or two
 };
 
+/** A part of an obstacle's surface that the site's foot is on, or beside: a face of a box; a
+ triangle of a mesh, or an edge or a corner of one; the hull of some corners of a convex core; a
+ halfspace. */
+struct PatchPart {
+  int piece = -1;
+  int face = -1;             ///< of a box, as in FlatEvidence
+  int triangle = -1;         ///< of a mesh
+  std::vector<int> corners;  ///< of the triangle (0 to 2; none: all), or of the convex core
+  double until = 1;          ///< it serves for t from where the one before ends to here
+};
+
+/** Whatever of the obstacles is near the site's foot is not above the plane by more than `slack`,
+ and some of it is near the foot for every t (FORMAT.md, lemma 10). */
+struct PatchEvidence {
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< need not be unit; the plane is n.z = m0
+  double m0 = 0;
+  double slack = 0;
+  std::vector<PatchPart> parts;  ///< by `until`; the last serves until 1
+};
+
 /** Why a site keeps one contact with a piece over a node. */
 struct ContactEvidence {
   int site = -1;
   int piece = -1;
-  std::optional<FlatEvidence> flat;  ///< one of the three
+  std::optional<FlatEvidence> flat;  ///< one of the four
   std::optional<NearEvidence> near;
   std::optional<RidgeEvidence> ridge;
   /** Pieces that keep away from the contact's point, with planes; others lie behind the face, or
    are seen to be apart without help. `shape` is unused. */
   std::vector<Separation> apart;
+  std::optional<PatchEvidence> patch;
 };
 
 /** A force weight(t) u at a contact, weight = w0 + w1 t. */

@@ -95,17 +95,50 @@ RidgeEvidence ReadRidge(const View& view) {
   return ridge;
 }
 
+std::vector<int> ReadCorners(const View& list) {
+  if (list.Size() < 1 || list.Size() > 3) list.Fail("one to three corners are expected here");
+  std::vector<int> corners;
+  for (std::size_t i = 0; i < list.Size(); ++i) corners.push_back(list.At(i).Index(1'000'000'000));
+  return corners;
+}
+
+PatchEvidence ReadPatch(const View& view, const Counts& counts) {
+  view.AllowKeys({"plane", "slack", "parts"});
+  PatchEvidence patch;
+  const View plane = view.Get("plane");
+  if (plane.Size() != 4) plane.Fail("the plane of a patch has four numbers");
+  for (int k = 0; k < 3; ++k) patch.n[k] = plane.At(k).Number();
+  patch.m0 = plane.At(3).Number();
+  if (view.Has("slack")) patch.slack = view.Get("slack").Number();
+  const View parts = view.Get("parts");
+  for (std::size_t i = 0; i < parts.Size(); ++i) {
+    const View given = parts.At(i);
+    given.AllowKeys({"piece", "face", "triangle", "corners", "until"});
+    PatchPart part;
+    part.piece = given.Get("piece").Index(counts.pieces.size());
+    if (given.Has("face")) part.face = given.Get("face").Index(6);
+    if (given.Has("triangle")) {
+      part.triangle = given.Get("triangle").Index(counts.pieces[part.piece]);
+    }
+    if (given.Has("corners")) part.corners = ReadCorners(given.Get("corners"));
+    if (given.Has("until")) part.until = given.Get("until").Number();
+    patch.parts.push_back(std::move(part));
+  }
+  return patch;
+}
+
 ContactEvidence ReadContact(const View& view, const Counts& counts) {
-  view.AllowKeys({"site", "piece", "flat", "near", "ridge", "apart"});
+  view.AllowKeys({"site", "piece", "flat", "near", "ridge", "patch", "apart"});
   ContactEvidence contact;
   contact.site = view.Get("site").Index(counts.sites);
   contact.piece = view.Get("piece").Index(counts.pieces.size());
-  if (view.Has("flat") + view.Has("near") + view.Has("ridge") != 1) {
-    view.Fail("one of \"flat\", \"near\" and \"ridge\" belongs here");
+  if (view.Has("flat") + view.Has("near") + view.Has("ridge") + view.Has("patch") != 1) {
+    view.Fail("one of \"flat\", \"near\", \"ridge\" and \"patch\" belongs here");
   }
   if (view.Has("flat")) contact.flat = ReadFlat(view.Get("flat"), counts.pieces[contact.piece]);
   if (view.Has("near")) contact.near = ReadNear(view.Get("near"));
   if (view.Has("ridge")) contact.ridge = ReadRidge(view.Get("ridge"));
+  if (view.Has("patch")) contact.patch = ReadPatch(view.Get("patch"), counts);
   if (!view.Has("apart")) return contact;
   const View list = view.Get("apart");
   for (std::size_t i = 0; i < list.Size(); ++i) {

@@ -76,6 +76,28 @@ class ContactChecker {
                                          const MovingSite<I>& site);
   std::optional<KeptContact<I>> KeepOnRidge(const ContactEvidence& evidence,
                                             const MovingSite<I>& site);
+  /** One part of a patch while it serves: |f - y| <= gap and h - n.y <= depth for some point y of
+   it with n.y <= h + slack. */
+  struct PartBounds {
+    I gap, depth;
+  };
+  /** The plane of a patch; what is near is not above n.z = top = h + slack. */
+  struct PatchPlane {
+    IntervalVector<I> n;  ///< unit
+    I h, slack, top;
+  };
+  std::optional<KeptContact<I>> KeepOnPatch(const ContactEvidence& evidence,
+                                            const MovingSite<I>& site);
+  bool BoundPatch(const PatchEvidence& patch, const PatchPlane& plane,
+                  const PolynomialVector<I>& foot, const I& height, I* spread, I* farthest) const;
+  Corners<I> CornersOf(const PatchPart& part) const;
+  std::optional<PartBounds> BoundPart(const PatchPart& part, const PatchPlane& plane,
+                                      const PolynomialVector<I>& foot) const;
+  std::optional<PartBounds> BoundHalfspace(const PlacedHalfspace<I>& halfspace,
+                                           const PatchPlane& plane,
+                                           const PolynomialVector<I>& foot) const;
+  bool KeepsBelow(int piece, const PatchPlane& plane, const Guard& guard,
+                  const std::vector<Plane>& planes) const;
   bool IsRidge(const PlacedSet<I>& placed, const std::vector<int>& corners,
                const PolynomialVector<I>& x, PolynomialVector<I>* w) const;
   bool OthersStayAway(const ContactEvidence& evidence, const Guard& seam, const Guard& nearer,
@@ -199,6 +221,7 @@ std::optional<KeptContact<I>> ContactChecker<I>::Keep(const ContactEvidence& evi
                              prepared_.Skin(body, object)};
   if (evidence.flat) return KeepOnFlat(evidence, moving);
   if (evidence.ridge) return KeepOnRidge(evidence, moving);
+  if (evidence.patch) return KeepOnPatch(evidence, moving);
   return evidence.near ? KeepNear(evidence, moving) : std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 #include "cguide/exact/contact.h"
 #include "cguide/verify/check/check.h"
 #include "cguide/verify/check/contact_flat_internal.h"
+#include "cguide/verify/check/contact_patch_internal.h"
 #include "cguide/verify/check/contact_point_internal.h"
 #include "cguide/verify/check/interval_internal.h"
 #include "tests/numeric/geometry_models.h"

@@ -1,0 +1,493 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "cguide/verify/kept_patch_internal.h"
+
+// Contacts whose foot goes from one part of the obstacles to the next: over seams and cracks
+// between tiles, along and around the edges of meshes, over what is even up to rounding.
+namespace cguide::verify {
+
+using Eigen::Vector3d;
+using numeric::Convex;
+using numeric::Geometry;
+using numeric::Mesh;
+using numeric::ObstaclePiece;
+using numeric::PieceKind;
+using patch_internal::Bounds;
+using patch_internal::FootPath;
+using patch_internal::Part;
+using patch_internal::Plane;
+
+namespace patch_internal {
+
+double FootPath::Scale() const {
+  return lower.cwiseAbs().cwiseMax(upper.cwiseAbs()).sum() + std::abs(height);
+}
+
+Part MakePart(const check::PatchPart& name, const std::vector<Vector3d>& v, bool is_face,
+              double error, const Plane& plane) {
+  Part part;
+  part.name = name;
+  part.is_face = is_face;
+  part.v = v;
+  part.error = error;
+  part.depth = plane.h - plane.n.dot(v[0]);
+  const int count = static_cast<int>(v.size());
+  for (int k = 1; k < count; ++k) {
+    part.side[k - 1] = v[k] - v[0];
+    part.longest = std::max(part.longest, part.side[k - 1].norm());
+    part.depth = std::max(part.depth, plane.h - plane.n.dot(v[k]));
+  }
+  if (count == 2) part.rows.row(0) = part.side[0].transpose() / part.side[0].squaredNorm();
+  if (count < 3) return part;
+  Eigen::Matrix<double, 3, 2> sides;
+  sides << part.side[0], part.side[1];
+  part.rows = (sides.transpose() * sides).inverse() * sides.transpose();
+  const Vector3d last = is_face ? Vector3d(v[1] + part.side[1]) : v[2];
+  part.longest = std::max(part.longest, (v[2] - v[1]).norm());
+  part.depth = std::max(part.depth, plane.h - plane.n.dot(last));
+  return part;
+}
+
+double GapAt(const Part& part, const Vector3d& foot) {
+  if (part.v.empty()) return std::max(0.0, part.normal.dot(foot) - part.offset);
+  Vector3d rest = foot - part.v[0];
+  double outside = 0, sum = 0;
+  for (int k = 1; k < static_cast<int>(part.v.size()); ++k) {
+    const double l = part.rows.row(k - 1).dot(rest), below = std::max(0.0, -l);
+    outside += part.is_face ? std::max(below, l - 1) * part.side[k - 1].norm() : below;
+    sum += l;
+    rest -= l * part.side[k - 1];
+  }
+  if (!part.is_face) outside = (outside + std::max(0.0, sum - 1)) * part.longest;
+  return rest.norm() + outside;
+}
+
+/** f(t) for t in [from, to], as a function of t' in [-1, 1]. The ends are within 2 u, the sums
+ within 8 u of the coefficients' sizes. */
+Model2 Restricted(const Model2& a, double from, double to) {
+  const double m = 0.5 * (from + to), k = 0.5 * (to - from);
+  Model2 result;
+  result.c[0] = a.c[0] + m * (a.c[1] + m * a.c[2]);
+  result.c[1] = k * (a.c[1] + 2 * m * a.c[2]);
+  result.c[2] = k * k * a.c[2];
+  result.r = (a.r + 32 * kUnit * Magnitude(a)) * kUp;
+  return result;
+}
+
+double Largest(const Model2& a) { return std::max(-LowerBound(a), UpperBound(a)); }
+
+// As in contact_patch_internal.h of the checker, which proves it.
+double GapOver(const Part& part, const FootPath& path, double from, double to) {
+  constexpr double kSlop = 64 * kUnit;
+  if (part.v.empty()) {
+    const Model2 over = Dot<kDegree>(part.normal, path.foot) - Constant<kDegree>(part.offset);
+    return std::max(0.0, UpperBound(Restricted(over, from, to)) + part.error);
+  }
+  Model2 rest[3];
+  for (int i = 0; i < 3; ++i) {
+    rest[i] =
+        Restricted(Coordinate<kDegree>(path.foot, i) - Constant<kDegree>(part.v[0][i]), from, to);
+  }
+  double outside = 0, size = part.error;
+  Model2 sum = Constant<kDegree>(0);
+  for (int k = 1; k < static_cast<int>(part.v.size()); ++k) {
+    const Vector3d& side = part.side[k - 1];
+    Model2 l = Constant<kDegree>(0);
+    for (int i = 0; i < 3; ++i) l = l + part.rows(k - 1, i) * rest[i];
+    const double below = std::max(0.0, -LowerBound(l));
+    outside += part.is_face ? std::max(below, UpperBound(l) - 1) * side.norm() : below;
+    sum = sum + l;
+    for (int i = 0; i < 3; ++i) rest[i] = rest[i] - side[i] * l;
+    size += 4 * Largest(l) * (part.error + kSlop * side.norm());  // of sides, at corners' errors
+  }
+  if (!part.is_face) {
+    outside = (outside + std::max(0.0, UpperBound(sum) - 1)) * (part.longest + 4 * part.error);
+  }
+  const Vector3d off(Largest(rest[0]), Largest(rest[1]), Largest(rest[2]));
+  return (off.norm() + outside + size) * (1 + kSlop) + kSlop * path.Scale();
+}
+
+}  // namespace patch_internal
+
+namespace {
+
+/** x, of two digits and not smaller. */
+double RoundedUp(double x) {
+  if (!(x > 0)) return 0;
+  const double scale = std::pow(10, std::floor(std::log10(x)) - 1);
+  return std::max(x, std::ceil(x / scale * (1 + 1e-12)) * scale);
+}
+
+/** Parts of the obstacles near a foot that may serve: those that are hardly below the plane. */
+class PartList {
+ public:
+  static constexpr std::size_t kMost = 600;
+
+  PartList(const Plane& plane, double deepest) : plane_(plane), deepest_(deepest) {}
+
+  void Add(const check::PatchPart& name, const std::vector<Vector3d>& v, bool is_face,
+           double error) {
+    const Part part = MakePart(name, v, is_face, error, plane_);
+    if (part.depth <= deepest_) parts.push_back(part);
+  }
+
+  /** The triangle, its edges and its corners; `numbers`: of the corners in certificates. */
+  void AddTriangle(check::PatchPart name, const std::array<Vector3d, 3>& v,
+                   const std::array<int, 3>& numbers, bool is_mesh, double error) {
+    name.corners = is_mesh ? std::vector<int>{} : std::vector{numbers[0], numbers[1], numbers[2]};
+    Add(name, {v[0], v[1], v[2]}, false, error);
+    for (int k = 0; k < 3; ++k) {
+      const int l = (k + 1) % 3;
+      name.corners = {numbers[k], numbers[l]};
+      Add(name, {v[k], v[l]}, false, error);
+      name.corners = {numbers[k]};
+      Add(name, {v[k]}, false, error);
+    }
+  }
+
+  void AddBox(int piece, const Convex& s);
+
+  std::vector<Part> parts;
+
+ private:
+  const Plane& plane_;
+  double deepest_;
+};
+
+void PartList::AddBox(int piece, const Convex& s) {
+  std::vector<Vector3d> v;
+  for (int i = 0; i < 8; ++i) {
+    v.push_back(s.c + s.R * Vector3d(i & 1 ? s.half[0] : -s.half[0], i & 2 ? s.half[1] : -s.half[1],
+                                     i & 4 ? s.half[2] : -s.half[2]));
+  }
+  for (int face = 0; face < 6; ++face) {
+    const int axis = face % 3, begin = face < 3 ? 1 << axis : 0;
+    const int a = begin | 1 << (axis + 1) % 3, b = begin | 1 << (axis + 2) % 3;
+    Add({piece, face, -1, {}, 1}, {v[begin], v[a], v[b]}, true, s.error);
+  }
+  for (int i = 0; i < 8; ++i) {
+    Add({piece, -1, -1, {i}, 1}, {v[i]}, false, s.error);
+    for (const int bit : {1, 2, 4}) {
+      if (i & bit) continue;
+      Add({piece, -1, -1, {i, i | bit}, 1}, {v[i], v[i | bit]}, false, s.error);
+    }
+  }
+}
+
+bool IsBox(const ObstaclePiece& piece) {
+  return piece.kind == PieceKind::kConvex && piece.convex.radius == 0 &&
+         piece.convex.kind == numeric::CoreKind::kBox && piece.convex.half.minCoeff() > 0;
+}
+
+Vector3d At(const Vector2& a, double t) {
+  return (a.c[0] + t * (a.c[1] + t * a.c[2])).head<3>().matrix();
+}
+
+/** Chooses which part serves for which t: proposals, BoundParts proves. */
+class Cover {
+ public:
+  static constexpr std::size_t kMost = 16;
+
+  Cover(const std::vector<Part>& parts, const FootPath& path) : parts_(parts), path_(path) {}
+
+  /** Indices into the parts with the t until which they serve; empty where there are too many. */
+  std::vector<std::pair<int, double>> Find() {
+    constexpr int kHalvings = 32;
+    if (!parts_.empty() && !Extend(-1, 1, kHalvings)) chosen_.clear();
+    return chosen_;
+  }
+
+ private:
+  double Cost(const Part& part, double t) const {
+    const double gap = GapAt(part, At(path_.foot, t));
+    return gap * gap + 2 * path_.height * std::max(0.0, part.depth);
+  }
+
+  bool Extend(double from, double to, int halvings) {
+    constexpr double kEnough = 1e-17;  // (3e-9 m)^2
+    const double t[] = {from, 0.5 * (from + to), to};
+    double best[3], cost[3];
+    std::fill(std::begin(best), std::end(best), INFINITY);
+    for (const Part& part : parts_) {
+      for (int k = 0; k < 3; ++k) best[k] = std::min(best[k], Cost(part, t[k]));
+    }
+    int chosen = -1;
+    double least = INFINITY;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+      double worst = 0;
+      for (int k = 0; k < 3; ++k) {
+        cost[k] = Cost(parts_[i], t[k]);
+        worst = std::max(worst, cost[k] / std::max(kEnough, best[k]));
+      }
+      if (!(worst < least)) continue;
+      least = worst;
+      chosen = static_cast<int>(i);
+    }
+    if (chosen < 0) return false;
+    if (least > 1.5 && halvings > 0) {
+      return Extend(from, t[1], halvings - 1) && Extend(t[1], to, halvings - 1);
+    }
+    if (!chosen_.empty() && chosen_.back().first == chosen) chosen_.pop_back();
+    chosen_.emplace_back(chosen, to);
+    return chosen_.size() <= kMost;
+  }
+
+  const std::vector<Part>& parts_;
+  const FootPath& path_;
+  std::vector<std::pair<int, double>> chosen_;
+};
+
+}  // namespace
+
+// Directions for the plane: normals of what is about the contact's point, the nearest to the
+// contact's own first, and that one.
+std::vector<Vector3d> ContactKeeper::PatchNormals(const numeric::Contact& contact) const {
+  constexpr double kSame = 1e-7, kWide = 0.4;
+  constexpr std::size_t kMost = 4;
+  const Geometry& g = world_.geometry();
+  const double reach = world_.model().contact.seam + 0.3 * std::abs(contact.distance);
+  std::vector<Vector3d> found;
+  const auto add = [&](const Vector3d& n) {
+    if (!((n - contact.n_W).norm() < kWide)) return;
+    for (const Vector3d& known : found) {
+      if ((n - known).norm() < 1e-12) return;
+    }
+    found.push_back(n);
+  };
+  for (int p = 0; p < static_cast<int>(g.pieces.size()) && found.size() < 64; ++p) {
+    const ObstaclePiece& piece = g.pieces[p];
+    if (FartherThan(piece, contact.y_W, contact.y_W, reach)) continue;
+    if (piece.kind == PieceKind::kHalfspace) add(piece.normal);
+    for (int face = 0; IsBox(piece) && face < 6; ++face) {
+      add((face < 3 ? 1.0 : -1.0) * piece.convex.R.col(face % 3));
+    }
+    if (!FacesOf(p)) continue;
+    const Mesh& mesh = *FacesOf(p);
+    numeric::VisitNear(mesh, contact.y_W, reach, [&](int t) {
+      const Vector3d across =
+          (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
+      const double area = across.norm();
+      if (area > 0) add((across.dot(contact.n_W) < 0 ? -1 : 1) / area * across);
+      return found.size() < 64;
+    });
+  }
+  std::sort(found.begin(), found.end(), [&](const Vector3d& a, const Vector3d& b) {
+    return (a - contact.n_W).squaredNorm() < (b - contact.n_W).squaredNorm();
+  });
+  const bool is_face = !found.empty() && (found[0] - contact.n_W).norm() < kSame;
+  if (!is_face) found.insert(found.begin(), contact.n_W);
+  if (found.size() > kMost) found.resize(kMost);
+  return found;
+}
+
+std::vector<Part> ContactKeeper::PatchParts(const FootPath& path, const Plane& plane) const {
+  const Geometry& g = world_.geometry();
+  const double reach = world_.model().contact.seam + 0.3 * path.height;
+  PartList list(plane, 0.05 * path.height + 1e-12);
+  const Vector3d center = 0.5 * (path.lower + path.upper);
+  const double radius = 0.5 * (path.upper - path.lower).norm() + reach;
+  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
+    const ObstaclePiece& piece = g.pieces[p];
+    if (FartherThan(piece, path.lower, path.upper, reach)) continue;
+    if (piece.kind == PieceKind::kHalfspace) {
+      if (!(piece.normal.dot(plane.n) > 0.5)) continue;
+      Part part;
+      part.name.piece = p;
+      part.normal = piece.normal;
+      part.offset = piece.offset;
+      part.error = numeric::HalfspaceError(piece, path.Scale());
+      list.parts.push_back(part);
+    } else if (IsBox(piece)) {
+      list.AddBox(p, piece.convex);
+    } else if (const Mesh* mesh = FacesOf(p)) {
+      const bool is_mesh = piece.kind == PieceKind::kMesh;
+      const bool few = numeric::VisitNear(*mesh, center, radius, [&](int t) {
+        const std::array<int, 3> numbers =
+            is_mesh ? std::array<int, 3>{0, 1, 2} : mesh->triangles[t];
+        list.AddTriangle({p, -1, is_mesh ? t : -1, {}, 1},
+                         {mesh->corner(t, 0), mesh->corner(t, 1), mesh->corner(t, 2)}, numbers,
+                         is_mesh, mesh->error);
+        return list.parts.size() < PartList::kMost;
+      });
+      if (!few) return {};
+    }
+  }
+  return list.parts;
+}
+
+// The highest rise above the plane of what is within `reach` of the foot; infinite where it is not
+// known to be small.
+double ContactKeeper::RiseNear(const FootPath& path, const Plane& plane, double reach,
+                               KeptContact* kept) const {
+  const Geometry& g = world_.geometry();
+  double rise = 0;
+  kept->evidence.apart.clear();
+  kept->friction = INFINITY;
+  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
+    const ObstaclePiece& piece = g.pieces[p];
+    if (FartherThan(piece, path.lower, path.upper, reach)) {
+      NoteAway(p, 0.5 * (path.lower + path.upper), (path.upper - path.lower).norm() + reach, kept);
+      continue;
+    }
+    kept->friction = std::min(kept->friction, world_.model().objects[piece.object].friction);
+    if (piece.kind == PieceKind::kHalfspace) {
+      const Model2 over = Dot<kDegree>(piece.normal, path.foot) - Constant<kDegree>(piece.offset);
+      const double turn = (plane.n - piece.normal).norm() + 64 * kUnit;
+      rise = std::max(
+          rise, -LowerBound(over) + turn * reach + numeric::HalfspaceError(piece, path.Scale()));
+    } else if (piece.kind == PieceKind::kConvex) {
+      const Convex& s = piece.convex;
+      rise = std::max(
+          rise, plane.n.dot(s.c) + numeric::CoreExtent(s, plane.n) + s.radius + s.error - plane.h);
+    } else {
+      rise = std::max(rise, RiseOfMesh(path, plane, reach, p, kept));
+    }
+  }
+  return rise;
+}
+
+double ContactKeeper::RiseOfMesh(const FootPath& path, const Plane& plane, double reach, int piece,
+                                 KeptContact* kept) const {
+  const Mesh& mesh = *world_.geometry().pieces[piece].mesh;
+  const double margin = reach + mesh.error + 1e-12 + 64 * kUnit * path.Scale();
+  const Vector3d center = 0.5 * (path.lower + path.upper);
+  double rise = 0;
+  numeric::VisitNear(mesh, center, 0.5 * (path.upper - path.lower).norm() + 2 * margin, [&](int t) {
+    const Vector3d a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
+    const Vector3d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    const bool away = ((low.array() - margin) > path.upper.array()).any() ||
+                      ((high.array() + margin) < path.lower.array()).any();
+    const double top = std::max({plane.n.dot(a), plane.n.dot(b), plane.n.dot(c)}) - plane.h;
+    if (away || top + mesh.error <= rise) return true;
+    if (top > 1e-12 && TriangleAway(mesh, t, path.foot, margin, piece, kept)) return true;
+    rise = top + mesh.error;
+    return true;
+  });
+  return rise;
+}
+
+// A plane that parts the ball about the foot from the triangle, as boxes do not.
+bool ContactKeeper::TriangleAway(const Mesh& mesh, int triangle, const Vector2& foot, double reach,
+                                 int piece, KeptContact* kept) const {
+  constexpr std::size_t kMost = 8;
+  const Vector3d v[] = {mesh.corner(triangle, 0), mesh.corner(triangle, 1),
+                        mesh.corner(triangle, 2)};
+  const auto parts = [&](const Vector3d& n) {
+    const double highest = std::max({n.dot(v[0]), n.dot(v[1]), n.dot(v[2])});
+    return LowerBound(Dot<kDegree>(n, foot)) - highest > reach * (1 + 1e-12);
+  };
+  auto& apart = kept->evidence.apart;
+  auto found = std::find_if(apart.begin(), apart.end(),
+                            [&](const check::Separation& s) { return s.other == piece; });
+  if (found != apart.end()) {
+    for (const check::Plane& plane : found->planes) {
+      if (parts(plane.n)) return true;
+    }
+    if (found->planes.size() == kMost) return false;
+  }
+  const auto there = numeric::ProjectPoint(v[0], v[1], v[2], mesh.error, At(foot, 0));
+  Vector3d n = there.n;
+  for (double& x : n) x = std::round(x * 1e4) / 1e4;
+  if (!parts(n)) n = there.n;
+  if (!parts(n)) return false;
+  if (found == apart.end()) found = apart.insert(apart.end(), {-1, piece, {}});
+  found->planes.push_back({n, 0, 0});
+  return true;
+}
+
+// Lemma 10 of FORMAT.md with its q = `spread`; `rise` is its slack.
+Bounds ContactKeeper::BoundParts(const std::vector<Part>& parts,
+                                 const std::vector<std::pair<int, double>>& chosen,
+                                 const FootPath& path, double rise) const {
+  Bounds bounds;
+  double from = -1, squares = 0, longest = 0;
+  for (const auto& [index, to] : chosen) {
+    const Part& part = parts[index];
+    const double gap = GapOver(part, path, from, to);
+    const double depth = part.v.empty() ? gap : part.depth + part.error + 64 * kUnit * path.Scale();
+    const double below = std::max(0.0, depth);
+    squares = std::max(squares, gap * gap + 2 * path.height * (below + rise));
+    longest = std::max(longest, gap * gap + 2 * path.height * below);
+    from = to;
+  }
+  bounds.spread = std::sqrt(squares) * kUp;
+  bounds.farthest = std::sqrt(path.height * path.height + longest) * kUp;
+  return bounds;
+}
+
+bool ContactKeeper::KeepOnPlane(const MovingSite& site, const numeric::Contact& contact,
+                                const Vector3d& n, KeptContact* kept) {
+  const ContactRules& rules = world_.model().contact;
+  const Plane plane{n, n.dot(contact.y_W)};
+  FootPath path;
+  Model2 d = Dot<kDegree>(plane.n, site.x) - Constant<kDegree>(plane.h);
+  const double slop =
+      64 * kUnit *
+      (site.lower.cwiseAbs().cwiseMax(site.upper.cwiseAbs()).sum() + std::abs(plane.h));
+  d.r += slop;
+  path.foot = site.x - d * Constant<kDegree>(plane.n);
+  path.lower = LowerOf(path.foot);
+  path.upper = UpperOf(path.foot);
+  path.height = UpperBound(d);
+  const double lowest = LowerBound(d);
+  if (!(lowest > 0 && lowest > site.radius - site.skin)) return false;
+  if (!(path.height < site.radius + rules.epsilon)) return false;
+  kept->evidence = {contact.site, -1, {}, {}, {}, {}, check::PatchEvidence{}};
+  // What rises beside the foot by more than this would spread the normal too far.
+  const double most = 0.1 * path.height;
+  double rise = RiseNear(path, plane, rules.seam, kept);
+  if (!(rise < most)) return false;
+  const std::vector<Part> parts = PatchParts(path, plane);
+  const auto chosen = Cover(parts, path).Find();
+  if (chosen.empty()) return false;
+  Bounds bounds;
+  bool settled = false;
+  double reach = 0;
+  for (int round = 0; round < 4 && !settled; ++round) {
+    reach = rules.seam + 1.1 * bounds.spread;
+    rise = RoundedUp(RiseNear(path, plane, reach, kept) + 4 * slop);
+    if (!(rise < most)) return false;
+    bounds = BoundParts(parts, chosen, path, rise);
+    settled = bounds.spread + rules.seam <= reach;
+  }
+  const double nearest = lowest - rise;
+  if (!settled || !(nearest > 0 && nearest > site.radius - LeastSkin(site, path, reach))) {
+    return false;
+  }
+  if (!(bounds.farthest < site.radius + rules.epsilon)) return false;
+  check::PatchEvidence& patch = *kept->evidence.patch;
+  patch = {plane.n, plane.h, rise, {}};
+  for (const auto& [index, until] : chosen) {
+    patch.parts.push_back(parts[index].name);
+    patch.parts.back().until = until;
+  }
+  kept->evidence.piece = patch.parts[0].piece;
+  kept->n_W = plane.n;
+  kept->normal_error = bounds.spread / nearest * kUp + 64 * kUnit;
+  SetForcePoint(site, kept);
+  return true;
+}
+
+// Of whatever may own the contact's point.
+double ContactKeeper::LeastSkin(const MovingSite& site, const FootPath& path, double reach) const {
+  const Geometry& g = world_.geometry();
+  double skin = site.skin;
+  for (const ObstaclePiece& piece : g.pieces) {
+    if (skin > 0 && !FartherThan(piece, path.lower, path.upper, reach)) {
+      skin = std::min(skin, g.PairSkin(site.body, piece.object));
+    }
+  }
+  return skin;
+}
+
+bool ContactKeeper::KeepOnPatch(const MovingSite& site, const numeric::Contact& contact,
+                                KeptContact* kept) {
+  for (const Vector3d& n : PatchNormals(contact)) {
+    if (KeepOnPlane(site, contact, n, kept)) return true;
+  }
+  return false;
+}
+
+}  // namespace cguide::verify

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "cguide/verify/kept_contact_internal.h"
+
+namespace cguide::verify::patch_internal {
+
+/** n.z = h, n unit up to rounding. */
+struct Plane {
+  Eigen::Vector3d n;
+  double h = 0;
+};
+
+/** The foot f(t) = x - d n of a site on a plane over a leaf. */
+struct FootPath {
+  Vector2 foot;
+  Eigen::Vector3d lower, upper;  ///< box of it
+  double height = 0;             ///< of the site above the plane, at most
+
+  /** A size of numbers, for their rounding. */
+  double Scale() const;
+};
+
+/** A part of an obstacle beside the foot: its corners, of a face the three that span it; none for a
+ halfspace. */
+struct Part {
+  check::PatchPart name;
+  bool is_face = false;
+  std::vector<Eigen::Vector3d> v;
+  double error = 0;  ///< of corners
+  double depth = 0;  ///< of the lowest corner below the plane
+  Eigen::Vector3d side[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< v[k] - v[0]
+  Eigen::Matrix<double, 2, 3> rows = Eigen::Matrix<double, 2, 3>::Zero();        ///< pseudo-inverse
+  double longest = 0;                                                            ///< side
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();                              ///< of a halfspace
+  double offset = 0;
+};
+
+Part MakePart(const check::PatchPart& name, const std::vector<Eigen::Vector3d>& v, bool is_face,
+              double error, const Plane& plane);
+
+/** How far the foot is from the part, at most (an estimate at a point, a bound over [from, to]). */
+double GapAt(const Part& part, const Eigen::Vector3d& foot);
+double GapOver(const Part& part, const FootPath& path, double from, double to);
+
+/** Over a leaf the contact's point is within `spread` of the foot and within `farthest` of x. */
+struct Bounds {
+  double spread = 0;
+  double farthest = 0;
+};
+
+}  // namespace cguide::verify::patch_internal
