@@ -314,6 +314,9 @@ std::vector<Part> ContactKeeper::PatchParts(const FootPath& path, const Plane& p
       if (!few) return {};
     }
   }
+  for (Part& part : list.parts) {
+    part.moved = g.pieces[part.name.piece].object == path.owner ? 0 : 2 * pose_;
+  }
   return list.parts;
 }
 
@@ -332,17 +335,18 @@ double ContactKeeper::RiseNear(const FootPath& path, const Plane& plane, double 
       continue;
     }
     kept->friction = std::min(kept->friction, world_.model().objects[piece.object].friction);
+    const double moved = piece.object == path.owner ? 0 : 2 * pose_;
     if (piece.kind == PieceKind::kHalfspace) {
       const Model2 over = Dot<kDegree>(piece.normal, path.foot) - Constant<kDegree>(piece.offset);
       const double turn = (plane.n - piece.normal).norm() + 64 * kUnit;
-      rise = std::max(
-          rise, -LowerBound(over) + turn * reach + numeric::HalfspaceError(piece, path.Scale()));
+      rise = std::max(rise, -LowerBound(over) + turn * reach + moved +
+                                numeric::HalfspaceError(piece, path.Scale()));
     } else if (piece.kind == PieceKind::kConvex) {
       const Convex& s = piece.convex;
       rise = std::max(
           rise, plane.n.dot(s.c) + numeric::CoreExtent(s, plane.n) + s.radius + s.error - plane.h);
     } else {
-      rise = std::max(rise, RiseOfMesh(path, plane, reach, p, kept));
+      rise = std::max(rise, RiseOfMesh(path, plane, reach, p, kept) + moved);
     }
   }
   return rise;
@@ -397,7 +401,7 @@ bool ContactKeeper::TriangleAway(const Mesh& mesh, int triangle, const Vector2& 
   return true;
 }
 
-// Lemma 10 of FORMAT.md with its q = `spread`; `rise` is its slack.
+// Lemma 11 of FORMAT.md with its q = `spread`; `rise` is its slack.
 Bounds ContactKeeper::BoundParts(const std::vector<Part>& parts,
                                  const std::vector<std::pair<int, double>>& chosen,
                                  const FootPath& path, double rise) const {
@@ -405,8 +409,9 @@ Bounds ContactKeeper::BoundParts(const std::vector<Part>& parts,
   double from = -1, squares = 0, longest = 0;
   for (const auto& [index, to] : chosen) {
     const Part& part = parts[index];
-    const double gap = GapOver(part, path, from, to);
-    const double depth = part.v.empty() ? gap : part.depth + part.error + 64 * kUnit * path.Scale();
+    const double gap = GapOver(part, path, from, to) + part.moved;
+    const double depth =
+        part.v.empty() ? gap : part.depth + part.moved + part.error + 64 * kUnit * path.Scale();
     const double below = std::max(0.0, depth);
     squares = std::max(squares, gap * gap + 2 * path.height * (below + rise));
     longest = std::max(longest, gap * gap + 2 * path.height * below);
@@ -422,12 +427,15 @@ bool ContactKeeper::KeepOnPlane(const MovingSite& site, const numeric::Contact& 
   const ContactRules& rules = world_.model().contact;
   const Plane plane{n, n.dot(contact.y_W)};
   FootPath path;
-  Model2 d = Dot<kDegree>(plane.n, site.x) - Constant<kDegree>(plane.h);
+  path.owner = contact.object;
+  Vector2 x = site.x;  // as the owner sees it, which may be moved
+  x.r.head<3>() += pose_ * kUp;
+  Model2 d = Dot<kDegree>(plane.n, x) - Constant<kDegree>(plane.h);
   const double slop =
       64 * kUnit *
       (site.lower.cwiseAbs().cwiseMax(site.upper.cwiseAbs()).sum() + std::abs(plane.h));
   d.r += slop;
-  path.foot = site.x - d * Constant<kDegree>(plane.n);
+  path.foot = x - d * Constant<kDegree>(plane.n);
   path.lower = LowerOf(path.foot);
   path.upper = UpperOf(path.foot);
   path.height = UpperBound(d);
@@ -437,7 +445,7 @@ bool ContactKeeper::KeepOnPlane(const MovingSite& site, const numeric::Contact& 
   kept->evidence = {contact.site, -1, {}, {}, {}, {}, check::PatchEvidence{}};
   // What rises beside the foot by more than this would spread the normal too far.
   const double most = 0.1 * path.height;
-  double rise = RiseNear(path, plane, rules.seam, kept);
+  double rise = RiseNear(path, plane, rules.seam + 3 * pose_, kept);
   if (!(rise < most)) return false;
   const std::vector<Part> parts = PatchParts(path, plane);
   const auto chosen = Cover(parts, path).Find();
@@ -446,11 +454,11 @@ bool ContactKeeper::KeepOnPlane(const MovingSite& site, const numeric::Contact& 
   bool settled = false;
   double reach = 0;
   for (int round = 0; round < 4 && !settled; ++round) {
-    reach = rules.seam + 1.1 * bounds.spread;
+    reach = rules.seam + 1.1 * bounds.spread + 3 * pose_;
     rise = RoundedUp(RiseNear(path, plane, reach, kept) + 4 * slop);
     if (!(rise < most)) return false;
     bounds = BoundParts(parts, chosen, path, rise);
-    settled = bounds.spread + rules.seam <= reach;
+    settled = bounds.spread + rules.seam + 3 * pose_ <= reach;
   }
   const double nearest = lowest - rise;
   if (!settled || !(nearest > 0 && nearest > site.radius - LeastSkin(site, path, reach))) {
@@ -463,7 +471,10 @@ bool ContactKeeper::KeepOnPlane(const MovingSite& site, const numeric::Contact& 
     patch.parts.push_back(parts[index].name);
     patch.parts.back().until = until;
   }
-  kept->evidence.piece = patch.parts[0].piece;
+  const int first = patch.parts[0].piece;
+  const Geometry& g = world_.geometry();
+  const bool is_own = g.pieces[first].object == path.owner;
+  kept->evidence.piece = is_own ? first : g.object_begin[path.owner];
   kept->n_W = plane.n;
   kept->normal_error = bounds.spread / nearest * kUp + 64 * kUnit;
   SetForcePoint(site, kept);

@@ -17,6 +17,7 @@ struct FootPath {
   Vector2 foot;
   Eigen::Vector3d lower, upper;  ///< box of it
   double height = 0;             ///< of the site above the plane, at most
+  int owner = -1;                ///< object as which all this is seen from
 
   /** A size of numbers, for their rounding. */
   double Scale() const;

@@ -54,6 +54,12 @@ TEST_CASE("Contact that is lost in the middle of an edge is told from kept conta
   Campaign("foot", 1000);
 }
 
+TEST_CASE(
+    "How a floor is cut changes no answer, and ridges and tips of meshes carry as they should") {
+  Campaign("tiles", 300);
+  Campaign("ridges", 1000);
+}
+
 TEST_CASE("Random edges that are proved stand the second check and have no bad instant") {
   Campaign("robots", 300);
   Campaign("blocks", 300);

@@ -54,6 +54,14 @@ std::optional<EdgeCase> MakeContact(TieRng& rng);
  stay in balance. */
 std::optional<EdgeCase> MakeFoot(TieRng& rng);
 
+/** The slides of MakeSliding on a floor that is cut into boxes, hulls, solids and sheets, with or
+ without hairline cracks. */
+std::optional<EdgeCase> MakeTiles(TieRng& rng);
+
+/** A site moves straight over the ridge or the tip of a roof of triangles, at one end 1e-9 m to
+ 1e-3 m within the band or beyond; contact alone is asked for. */
+std::optional<EdgeCase> MakeRidges(TieRng& rng);
+
 /** An edge of a humanoid in the chair-and-table room that is proved, into which a needle is put as
  in MakeNeedle. */
 std::optional<EdgeCase> MakeRoomNeedle(TieRng& rng);

@@ -237,6 +237,8 @@ std::span<const EdgeKind> EdgeKinds() {
                                         {"sliding", &MakeSliding, true},
                                         {"contact", &MakeContact, true},
                                         {"foot", &MakeFoot, true},
+                                        {"tiles", &MakeTiles, true},
+                                        {"ridges", &MakeRidges, true},
                                         {"room_needle", &MakeRoomNeedle, false},
                                         {"robots", &MakeRobots, true},
                                         {"blocks", &MakeBlocks, true},

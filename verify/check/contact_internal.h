@@ -85,7 +85,12 @@ class ContactChecker {
   struct PatchPlane {
     IntervalVector<I> n;  ///< unit
     I h, slack, top;
+    I reach;         ///< of the ball about the foot
+    int owner = -1;  ///< object that is in its place; others are moved by up to twice `pose`
   };
+  I MovedFrom(const PatchPlane& plane, int piece) const {
+    return prepared_.obstacles[piece].object == plane.owner ? I(0.0) : I(2.0) * Moved();
+  }
   std::optional<KeptContact<I>> KeepOnPatch(const ContactEvidence& evidence,
                                             const MovingSite<I>& site);
   bool BoundPatch(const PatchEvidence& patch, const PatchPlane& plane,
@@ -94,7 +99,7 @@ class ContactChecker {
   std::optional<PartBounds> BoundPart(const PatchPart& part, const PatchPlane& plane,
                                       const PolynomialVector<I>& foot) const;
   std::optional<PartBounds> BoundHalfspace(const PlacedHalfspace<I>& halfspace,
-                                           const PatchPlane& plane,
+                                           const PatchPlane& plane, const I& moved,
                                            const PolynomialVector<I>& foot) const;
   bool KeepsBelow(int piece, const PatchPlane& plane, const Guard& guard,
                   const std::vector<Plane>& planes) const;

@@ -6,7 +6,7 @@
 #include "cguide/verify/check/contact_internal.h"
 
 // Contacts whose foot stays on a patch of several parts, whole or not, in one plane or nearly so
-// (FORMAT.md part 5.4, lemma 10).
+// (FORMAT.md part 5.4, lemma 11).
 namespace cguide::check {
 
 /** The function for t in [from, to] alone, as one of t' in [-1, 1]. */
@@ -55,10 +55,11 @@ Corners<I> ContactChecker<I>::CornersOf(const PatchPart& part) const {
 // y = f - max(0, n'.f - h') n' is in the halfspace, and not above the plane where n.n' >= 0.
 template <typename I>
 std::optional<typename ContactChecker<I>::PartBounds> ContactChecker<I>::BoundHalfspace(
-    const PlacedHalfspace<I>& halfspace, const PatchPlane& plane,
+    const PlacedHalfspace<I>& halfspace, const PatchPlane& plane, const I& moved,
     const PolynomialVector<I>& foot) const {
   if (!IsNonNegative(Dot(plane.n, halfspace.normal))) return std::nullopt;
-  const I gap = PositivePart<I>(UpperBound(Dot(halfspace.normal, foot)) - halfspace.offset);
+  const I over = UpperBound(Dot(halfspace.normal, foot)) - halfspace.offset;
+  const I gap = PositivePart<I>(over + moved);
   return PartBounds{gap, gap};
 }
 
@@ -74,7 +75,8 @@ std::optional<typename ContactChecker<I>::PartBounds> ContactChecker<I>::BoundPa
     return std::nullopt;
   }
   const Obstacle<I>& obstacle = prepared_.obstacles[part.piece];
-  if (obstacle.halfspace) return BoundHalfspace(*obstacle.halfspace, plane, foot);
+  const I moved = MovedFrom(plane, part.piece);
+  if (obstacle.halfspace) return BoundHalfspace(*obstacle.halfspace, plane, moved, foot);
   Corners<I> v = CornersOf(part);
   if (v.empty()) return std::nullopt;
   const bool is_face = obstacle.convex && part.face >= 0;
@@ -117,11 +119,11 @@ std::optional<typename ContactChecker<I>::PartBounds> ContactChecker<I>::BoundPa
   for (int i = 0; i < 3; ++i) off[i] = Magnitude(RangeOf(rest[i]));
   I lowest = Dot(plane.n, v[0]);
   for (const IntervalVector<I>& corner : v) lowest = Join(lowest, Dot(plane.n, corner));
-  if (!IsNonNegative(plane.top - Upper(lowest))) return std::nullopt;
-  return PartBounds{Upper(Norm(off) + outside), Upper(plane.h - Lower(lowest))};
+  if (!IsNonNegative(plane.top - moved - Upper(lowest))) return std::nullopt;
+  return PartBounds{Upper(Norm(off) + outside + moved), Upper(plane.h - Lower(lowest) + moved)};
 }
 
-// Lemma 10's q and D, over all parts.
+// Lemma 11's q and D, over all parts.
 template <typename I>
 bool ContactChecker<I>::BoundPatch(const PatchEvidence& patch, const PatchPlane& plane,
                                    const PolynomialVector<I>& foot, const I& height, I* spread,
@@ -150,21 +152,20 @@ template <typename I>
 bool ContactChecker<I>::KeepsBelow(int piece, const PatchPlane& plane, const Guard& guard,
                                    const std::vector<Plane>& planes) const {
   const Obstacle<I>& obstacle = prepared_.obstacles[piece];
+  const I moved = MovedFrom(plane, piece), top = Lower(plane.top - moved);
   if (obstacle.halfspace) {
     const PlacedHalfspace<I>& other = *obstacle.halfspace;
     const I rise = other.offset - LowerBound(Dot(other.normal, guard.center)) +
                    Norm(Minus(plane.n, other.normal)) * guard.radius;
-    return IsNonNegative(plane.slack - rise);
+    return IsNonNegative(plane.slack - moved - rise);
   }
-  if (obstacle.convex) {
-    return IsNonNegative(plane.top - HighestOf(*obstacle.convex, plane.n));
-  }
+  if (obstacle.convex) return IsNonNegative(top - HighestOf(*obstacle.convex, plane.n));
   const PlacedMesh<I>& mesh = *obstacle.mesh;
   if (mesh.solid) {
     // Above the plane, in the ball, at t = 0: all such points, for all t, are on one side (lemma
     // 5).
     const I rise = plane.slack + I(0.5) * I(model_.contact.seam);
-    if (!IsPositive(guard.radius - rise)) return false;
+    if (!IsPositive(plane.reach - rise)) return false;
     IntervalVector<I> above;
     for (int i = 0; i < 3; ++i) above[i] = guard.center[i].c[0] + rise * plane.n[i];
     if (!IsSeenOutside(above, mesh, plane.n)) return false;
@@ -184,21 +185,27 @@ std::optional<KeptContact<I>> ContactChecker<I>::KeepOnPatch(const ContactEviden
   plane.h = I(patch.m0) * Inverse(Norm(given));
   plane.slack = I(patch.slack);
   plane.top = Lower(plane.h + plane.slack);
+  if (patch.parts.empty()) return Decline("its foot may leave the patch");
   if (!IsNonNegative(plane.slack)) return Decline("the slack is negative");
-  const Polynomial<I> d = Dot(plane.n, site.x) - Polynomial<I>(plane.h);
+  plane.owner = prepared_.obstacles[evidence.piece].object;
+  PolynomialVector<I> x = site.x;  // as the owner sees it
+  if (prepared_.robust.pose > 0) {
+    for (Polynomial<I>& along : x) along.c[0] = along.c[0] + PlusMinus(Moved());
+  }
+  const Polynomial<I> d = Dot(plane.n, x) - Polynomial<I>(plane.h);
   const I nearest = Lower(LowerBound(d) - plane.slack), r(site.radius);
   if (!IsPositive(nearest)) return Decline("it may be too near");
   PolynomialVector<I> foot;
-  for (int i = 0; i < 3; ++i) foot[i] = site.x[i] - plane.n[i] * d;
+  for (int i = 0; i < 3; ++i) foot[i] = x[i] - plane.n[i] * d;
   I spread, farthest;
   if (!BoundPatch(patch, plane, foot, UpperBound(d), &spread, &farthest)) {
     return Decline("its foot may leave the patch");
   }
   if (!IsNegative(farthest - (r + I(model_.contact.epsilon)))) return Decline("it may be too far");
-  const int owner = prepared_.obstacles[patch.parts[0].piece].object;
-  KeptContact<I> kept{plane.n, Upper(spread * Inverse(nearest)), model_.objects[owner].friction,
-                      site.x};
-  const Guard guard = MakeGuard(foot, Upper(spread + I(model_.contact.seam)));
+  KeptContact<I> kept{plane.n, Upper(spread * Inverse(nearest)),
+                      model_.objects[plane.owner].friction, site.x};
+  plane.reach = Upper(spread + I(model_.contact.seam));
+  const Guard guard = MakeGuard(foot, plane.reach);
   double skin = model_.contact.skin;
   const int body = model_.robot.links[model_.sites[evidence.site].link].body;
   for (int p = 0; p < static_cast<int>(prepared_.obstacles.size()); ++p) {
