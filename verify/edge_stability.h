@@ -46,8 +46,8 @@ class StabilityEdgeWorkspace {
  The edge is bisected. At the middle of a leaf the real placement, with its bounds, is asked for
  contacts and forces; a placement that is provably not stable refutes. Of the contacts those are
   used that provably stay over the leaf: on faces of halfspaces, boxes, meshes and hulls with one
- normal, on edges, corners and round sides of convex pieces with a bound on how it turns; other
- sites may serve on other leaves. The proof: constant admissible force directions u_j, weights
+ normal, on edges, corners and round sides of convex pieces and on patches of several parts with a
+ bound on how it turns; other sites may serve on other leaves. The proof: constant admissible force directions u_j, weights
  lambda_j(t) >= 0, affine, arms r_j(t) about the moving centre of
  mass, each one Taylor model, and a matrix R with |I - R B(t)|_inf <= kappa < 1 and |R (v - A(t)
  lambda(t))|_inf < (1
@@ -55,8 +55,8 @@ class StabilityEdgeWorkspace {
  weights by less than their least, and v is a positive combination of six independent wrenches:
  interior.
 
- kUndecided where the bisection ends before that: at instants at which the contacts that carry the
- robot change, where only edges or corners of meshes carry it, and for ContactModel::kNearest. */
+ kUndecided where the bisection ends before that: at instants at which all contacts that carry the
+ robot jump, where there is no room, and for ContactModel::kNearest. */
 EdgeStability DecideEdgeStability(const numeric::World& world, const Edge& edge,
                                   const EdgeStabilityOptions& options,
                                   StabilityEdgeWorkspace* workspace);
