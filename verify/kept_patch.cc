@@ -331,7 +331,14 @@ double ContactKeeper::RiseNear(const FootPath& path, const Plane& plane, double 
   for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
     const ObstaclePiece& piece = g.pieces[p];
     if (FartherThan(piece, path.lower, path.upper, reach)) {
-      NoteAway(p, 0.5 * (path.lower + path.upper), (path.upper - path.lower).norm() + reach, kept);
+      const Vector3d half = piece.convex.R.cwiseAbs() * piece.convex.half +
+                            Vector3d::Constant(piece.convex.radius + reach + 1e-9);
+      const bool boxes_apart = ((path.lower - piece.convex.c).array() > half.array()).any() ||
+                               ((piece.convex.c - path.upper).array() > half.array()).any();
+      if (!boxes_apart) {
+        NoteAway(p, 0.5 * (path.lower + path.upper), (path.upper - path.lower).norm() + reach,
+                 kept);
+      }
       continue;
     }
     kept->friction = std::min(kept->friction, world_.model().objects[piece.object].friction);

@@ -17,7 +17,7 @@ struct FootPath {
   Vector2 foot;
   Eigen::Vector3d lower, upper;  ///< box of it
   double height = 0;             ///< of the site above the plane, at most
-  int owner = -1;                ///< object as which all this is seen from
+  int owner = -1;                ///< object from which all this is seen
 
   /** A size of numbers, for their rounding. */
   double Scale() const;
@@ -36,6 +36,7 @@ struct Part {
   double longest = 0;                                                            ///< side
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();                              ///< of a halfspace
   double offset = 0;
+  double moved = 0;  ///< how far its object may be from where `owner` sees it
 };
 
 Part MakePart(const check::PatchPart& name, const std::vector<Eigen::Vector3d>& v, bool is_face,

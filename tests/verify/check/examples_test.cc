@@ -84,6 +84,14 @@ TEST_CASE("Of every kind of evidence in one certificate none holds with a wrong 
   CHECK(!is_proved_with(contacts + "5/near/y/2", 0.25));
   CHECK(!is_proved_with(contacts + "6/near/y/1", 0.25));
   CHECK(!is_proved_with(contacts + "7/near/corners/0/0", 1));
+  CHECK(is_proved_with(contacts + "8/patch/plane/3", 0.501));
+  CHECK(!is_proved_with(contacts + "8/patch/plane/3", 0.499));  // the face rises above it
+  CHECK(!is_proved_with(contacts + "8/patch/plane/0", 0.1));
+  CHECK(!is_proved_with(contacts + "8/patch/slack", -1e-3));
+  CHECK(!is_proved_with(contacts + "8/patch/slack", 0.02));
+  CHECK(!is_proved_with(contacts + "8/patch/parts/0/triangle", 2));
+  CHECK(!is_proved_with(contacts + "8/patch/parts/1/piece", 3));
+  CHECK(!is_proved_with(contacts + "8/patch/parts/1/until", 0.9));
   for (int i = 0; i < 8; ++i) {
     CHECK(!is_proved_with(contacts + std::to_string(i) + "/site", (i + 1) % 8));
     CHECK(!is_proved_with(contacts + std::to_string(i) + "/piece", (i + 1) % 8));
