@@ -42,7 +42,8 @@ struct PlanArguments {
   std::string certificate;       ///< file that takes the proofs, or empty
   std::string robust;            ///< "mu=0.05,pose_mm=2,com_mm=5": of every model in the box
   double edge_step = 0.005;
-  double extension = 0;  ///< 0: the planner's default
+  double extension = 0;           ///< 0: the planner's default
+  std::string link = "straight";  ///< straight, flow
   int shortcut_rounds = 120;
   std::string stats;  ///< file for times and counters, or empty
 };

@@ -59,6 +59,10 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
       ->capture_default_str();
   c->add_option("--extension", a->extension, "Length of an extension of a tree")
       ->check(CLI::Range(0.01, 10.0));
+  c->add_option("--link", a->link,
+                "straight: projected steps; flow: along the contacts that bear force")
+      ->check(CLI::IsMember({"straight", "flow"}))
+      ->capture_default_str();
   c->add_option("--shortcuts", a->shortcut_rounds, "Rounds of shortcutting")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
