@@ -60,6 +60,17 @@ struct AuditArguments {
   bool resume = false;          ///< take the proofs that `certificate` has
   std::string critical;         ///< "mu": ask how much friction the path needs
   std::string robust;           ///< "mu=0.05,pose_mm=2,com_mm=5": prove a box of models
+  std::string list;             ///< file that names paths, instead of `path`
+  std::string folder;           ///< with `list`: takes reports, certificates and manifest
+  int shard = 1;                ///< with `list`: of `shards`
+  int shards = 1;
+};
+
+struct MergeArguments {
+  CommonArguments common;
+  std::string folder;
+  int expect = 1;               ///< how many shards
+  std::string format = "text";  ///< text, json
 };
 
 struct StabilityArguments {
@@ -94,6 +105,8 @@ struct ViewArguments {
 /** Each runs one command and returns its exit code; errors leave as cguide::Error. */
 int RunPlan(const PlanArguments& arguments);
 int RunAudit(const AuditArguments& arguments);
+int RunAuditList(const AuditArguments& arguments);
+int RunMerge(const MergeArguments& arguments);
 int RunStability(const StabilityArguments& arguments);
 int RunModel(const ModelArguments& arguments);
 int RunDoctor(const DoctorArguments& arguments);
