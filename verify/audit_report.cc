@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "cguide/numeric/describe.h"
+#include "cguide/verify/report/text_internal.h"
 
 namespace cguide::verify {
 namespace {
@@ -199,8 +200,8 @@ std::string WriteAuditJson(const AuditSubject& subject, const Model& model,
   Json json;
   json["schema"] = "cguide-audit/1";
   json["tool_version"] = subject.tool_version;
-  json["path"] = subject.path_file;
-  json["problem"] = subject.problem_file;
+  json["path"] = report::CleanUtf8(subject.path_file);
+  json["problem"] = report::CleanUtf8(subject.problem_file);
   json["model_digest"] = subject.model_digest;
   json["verdict"] = VerdictName(audit.verdict);
   json["edges_tested"] = "sampled(" + Short(audit.step) + ")";

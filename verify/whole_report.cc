@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "cguide/numeric/describe.h"
+#include "cguide/verify/report/text_internal.h"
 
 namespace cguide::verify {
 namespace {
@@ -120,8 +121,8 @@ std::string WriteWholeJson(const AuditSubject& subject, const Model& model,
   Json json;
   json["schema"] = "cguide-audit-whole/1";
   json["tool_version"] = subject.tool_version;
-  json["path"] = subject.path_file;
-  json["problem"] = subject.problem_file;
+  json["path"] = report::CleanUtf8(subject.path_file);
+  json["problem"] = report::CleanUtf8(subject.problem_file);
   json["model"] = subject.model_digest;
   json["edges_tested"] = "whole";
   json["skin_m"] = model.contact.skin;
