@@ -5,6 +5,7 @@
 
 #include "cguide/numeric/describe.h"
 #include "cguide/verify/report/text_internal.h"
+#include "cguide/verify/skin_hint.h"
 
 namespace cguide::verify {
 namespace {
@@ -106,6 +107,7 @@ std::string WriteWholeText(const AuditSubject& subject, const Model& model,
            << Short(v.length) << ": " << DescribeViolation(model, v) << '\n';
     }
   }
+  for (const std::string& hint : SkinHints(model, audit)) text << "  " << hint << '\n';
   if (!(audit.robust == check::Robustness{})) {
     text << "  proved: for " << DescribeRobustness(audit.robust) << '\n';
   }
@@ -152,6 +154,8 @@ std::string WriteWholeJson(const AuditSubject& subject, const Model& model,
     }
     json["edges"].push_back(entry);
   }
+  const std::vector<std::string> hints = SkinHints(model, audit);
+  if (!hints.empty()) json["hints"] = hints;
   return json.dump(2) + "\n";
 }
 

@@ -255,6 +255,22 @@ section_foreign_path() {
   says "floor"
 }
 
+section_recorded_motion() {
+  # Feet at z = 0, as recordings have them: proved with a skin, and without the report says what to do.
+  local recorded=$fixtures/problems/recorded.yaml motion
+  sed -e 's/skin_m: 0.001/skin_m: 0/' -e "s|\.\./robots|$fixtures/robots|g" "$recorded" >"$work/bare.yaml"
+  for motion in standing squatting; do
+    expect 0 audit "$fixtures/paths/$motion.csv" --problem "$recorded"
+    says "edges proved for every s"
+    says "below the skin of 1 mm"
+    expect 1 audit "$fixtures/paths/$motion.csv" --problem "$work/bare.yaml"
+    says '"LLEG_JOINT5" and "floor"'
+    says "if they are meant to touch, give a contact.skin_m"
+    expect 1 audit "$fixtures/paths/$motion.csv" --problem "$work/bare.yaml" --dense 0.05
+    says "if they are meant to touch, give a contact.skin_m"
+  done
+}
+
 section_bad_input() {
   # A file name of any bytes is no reason to fail; what is not UTF-8 is replaced in the reports for programs.
   local odd=$work/$'odd\xff.json'
