@@ -57,6 +57,10 @@ grep -qF '  2  refuted      ../down.csv: ' "$work/text" || fail "the refuted pat
 for certificate in "$work"/one/*[0-9].certificate.json "$work"/one/0001*.certificate.json; do
   "$checker" "$certificate" >/dev/null || fail "$certificate is refused"
 done
+"$checker" "$work/one/0000_chair1.certificate.json" --guide "$work/some paths/chair1.json" >/dev/null ||
+  fail "a certificate is not about the guide it was made for"
+"$checker" "$work/one/0000_chair1.certificate.json" --guide "$work/some paths/chair2.json" >/dev/null &&
+  fail "a certificate is about another guide"
 grep -rq "$work" "$work/one"/00*.report.json && fail "a report holds the folder it was made in"
 
 # Shards: the same bytes, whatever their number and the threads, and the answer of one run.
@@ -160,6 +164,12 @@ ls -a "$work/long" | grep -q '^\.[0-9s]' && fail "temporary files are left"
 "$program" audit -q --list "$list" --shard 2/2 --out "$work/options" --path-format csv >/dev/null
 expect 3 merge "$work/options" --expect 2
 says "options"
+"$program" audit -q --list "$list" --shard 2/2 --out "$work/options" --robust mu=0.01 >/dev/null
+expect 3 merge "$work/options" --expect 2
+says "options"
+"$program" audit -q --list "$list" --shard 1/2 --out "$work/options" --resume --robust mu=0.010,pose_mm=0 >/dev/null
+expect 1 merge "$work/options" --expect 2
+"$checker" "$work/options/0001_floor.certificate.json" | grep -q "friction less by up to 0.01" || fail "the box was not proved"
 
 # More shards than paths: some have nothing to do.
 printf 'floor.json\n' >"$work/lists/../short.txt"
