@@ -139,6 +139,12 @@ sed -i '/^{"edge":1,/d' "$work/one/0000_chair1.certificate.json"
 expect 1 audit --list "$list" --out "$work/one" --resume
 same "$work/cut2" "$work/one"
 
+# Damaged: the manifest of a run is not guessed at.
+cp -r "$work/cut2" "$work/damaged"
+head -c 200 "$work/cut2/shard-1-of-2.json" >"$work/damaged/shard-1-of-2.json"
+expect 3 audit --list "$list" --shard 1/2 --out "$work/damaged" --resume
+says "remove it"
+
 # Interrupted: a valid manifest, no summary; the rest follows.
 for i in $(seq 100); do echo "../some paths/chair$((i % 3 + 1)).json"; done >"$work/lists/long.txt"
 "$program" audit -q --list "$work/lists/long.txt" --out "$work/long" --threads 1 >"$work/out" 2>"$work/err" &
@@ -170,6 +176,13 @@ says "options"
 "$program" audit -q --list "$list" --shard 1/2 --out "$work/options" --resume --robust mu=0.010,pose_mm=0 >/dev/null
 expect 1 merge "$work/options" --expect 2
 "$checker" "$work/options/0001_floor.certificate.json" | grep -q "friction less by up to 0.01" || fail "the box was not proved"
+
+# What is doubtful of a problem is said once, not for each of its paths.
+sed -e "s|\.\./robots/hrp2.srdf|$work/odd.srdf|; s|\.\./robots|$fixtures/robots|" "$room" >"$work/odd.yaml"
+sed 's|<group_state name="standing" group="all">|&<joint name="TAIL" value="0"/>|' "$fixtures/robots/hrp2.srdf" >"$work/odd.srdf"
+printf 'floor.csv\todd.yaml\ndown.csv\todd.yaml\n' >"$work/odd.txt"
+expect 1 audit --list "$work/odd.txt" --out "$work/odd"
+[ "$(grep -c TAIL "$work/err")" = 1 ] || fail "the warning about the posture came $(grep -c TAIL "$work/err") times"
 
 # More shards than paths: some have nothing to do.
 printf 'floor.json\n' >"$work/lists/../short.txt"

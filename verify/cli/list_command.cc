@@ -1,3 +1,4 @@
+#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -26,15 +27,15 @@ constexpr std::size_t kMaxBytes = 256u << 20;
 /** Problems that were read already: most lists have many paths and few rooms. */
 class ProblemCache {
  public:
-  /** Warnings come with the first reading alone. @throws as numeric::io::ReadProblem. */
+  /** @throws as numeric::io::ReadProblem. */
   numeric::Problem Read(const fs::path& file) {
     const auto known = problems_.find(file.string());
     if (known != problems_.end()) return known->second;
-    numeric::Problem problem = numeric::io::ReadProblem(file);
-    numeric::Problem& kept = problems_[file.string()] = problem;
-    kept.warnings.clear();
-    return problem;
+    return problems_[file.string()] = numeric::io::ReadProblem(file);
   }
+
+  /** The user has seen the warnings, and will not again. */
+  void ForgetWarnings(const fs::path& file) { problems_[file.string()].warnings.clear(); }
 
  private:
   std::map<std::string, numeric::Problem> problems_;
@@ -107,12 +108,20 @@ bool HasBytes(const fs::path& file, const std::string& digest) {
          numeric::io::Digest(numeric::io::ReadFileBytes(file, kMaxBytes)) == digest;
 }
 
+verify::ShardManifest ReadBefore(const fs::path& file) {
+  try {
+    return verify::ReadManifest(file);
+  } catch (const Error& e) {
+    throw Error(e.code(), std::string(e.what()) + "; remove it to audit the shard anew");
+  }
+}
+
 /** What an earlier run of this version finished on the same inputs with the same options, and whose
  files are still those it wrote. */
 std::map<int, verify::ListedAudit> FinishedBefore(const ListRun& run, const fs::path& file) {
   std::map<int, verify::ListedAudit> finished;
   if (!run.arguments.resume || !fs::exists(file)) return finished;
-  const verify::ShardManifest before = verify::ReadManifest(file);
+  const verify::ShardManifest before = ReadBefore(file);
   if (before.tool_version != run.manifest.tool_version || before.options != run.manifest.options) {
     return finished;
   }
@@ -144,7 +153,7 @@ std::vector<check::EdgeProof> ProofsBefore(const ListRun& run, const Subject& su
   return {};
 }
 
-/** Written after each path, so that whatever ends the run leaves a valid partial result. */
+/** Written as the audit goes on, so that whatever ends the run leaves a valid partial result. */
 void WriteManifest(ListRun& run) {
   run.manifest.audits.clear();
   for (const auto& [index, audit] : run.audits) run.manifest.audits.push_back(audit);
@@ -177,7 +186,9 @@ void WriteResults(const ListRun& run, const Subject& subject, const verify::Whol
 
 std::optional<Subject> ReadOrRecord(ListRun& run, verify::ListedAudit* listed) {
   try {
-    return ReadListed(run, run.arguments.common, listed->index);
+    Subject subject = ReadListed(run, run.arguments.common, listed->index);
+    run.problems.ForgetWarnings(subject.problem_file);
+    return subject;
   } catch (const Error& e) {
     const bool input = e.code() == Error::Code::kBadInput || e.code() == Error::Code::kIo;
     listed->verdict =
@@ -292,13 +303,19 @@ int RunAuditList(const AuditArguments& given) {
   std::error_code code;
   fs::remove(run.folder / kSummaryName, code);
   WriteManifest(run);
+  // At most once a second: the manifest of a long list is long. A run that is killed loses no more
+  // than to audit that second's paths from their certificates.
   ProgressLine progress(run.arguments.common);
+  auto written = std::chrono::steady_clock::now();
   for (int i = run.manifest.shard - 1; i < run.manifest.listed; i += run.manifest.shards) {
     if (InterruptFlag()) break;
     if (run.audits.contains(i)) continue;
     run.audits[i] = AuditListed(run, i, &progress);
+    if (std::chrono::steady_clock::now() - written < std::chrono::seconds(1)) continue;
     WriteManifest(run);
+    written = std::chrono::steady_clock::now();
   }
+  WriteManifest(run);
   return Conclude(run);
 }
 
