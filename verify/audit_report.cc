@@ -144,9 +144,9 @@ std::string DescribeViolation(const Model& model, const Violation& v) {
       return sure ? "no contact" : "contact undecided: within rounding of the band's end";
     case Obstruction::kCollision:
       if (!sure) return DescribePair(model, v.pair) + " undecided: touching within rounding";
-      return DescribePair(model, v.pair) +
-             (v.depth < 1e-9 ? " touch, or overlap by less than a nanometre"
-                             : " overlap by about " + Millimetres(v.depth));
+      return DescribePair(model, v.pair) + (v.depth < 1e-9
+                                                ? " touch, or overlap by less than a nanometre"
+                                                : " overlap by about " + Millimetres(v.depth));
     case Obstruction::kUnstable: {
       if (!sure) {
         return "balance undecided: " +
