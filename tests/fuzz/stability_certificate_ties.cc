@@ -24,6 +24,9 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kUnit = 0x1p-53;
 
+/** In [-1, 1], of any size down to 2^-12. */
+double AnySize(TieRng& rng) { return std::ldexp(AnyNumber(rng), -Below(rng, 12)); }
+
 Vector3d UnitAcross(TieRng& rng, const Vector3d& n) { return n.cross(AnyPoint(rng)).normalized(); }
 
 /** A point site with all bits of its numbers in use, its normal an axis or rounded to a unit one.
@@ -63,16 +66,17 @@ std::string CheckSeparator(TieRng& rng, Tally* tally) {
   ScaledContacts scaled;
   if (!ScaleContacts(question.Query(), &scaled)) return "a finite query was refused";
   const Contact& contact = question.contacts[0];
-  const Vector3d n = contact.n_W, m = AnyPoint(rng);
-  const double size = std::ldexp(1.0, -Below(rng, 16));
+  const Vector3d n = contact.n_W, m = std::abs(AnySize(rng)) * AnyPoint(rng);
+  const double size = std::abs(AnySize(rng));
   const Vector3d g = size * (UnitAcross(rng, n) - contact.friction * n);
   const bool tied_gain = Below(rng, 4) == 0;
-  const double reach = kUnit * (64 * g.norm() + 32 * m.norm());
+  const double reach = kUnit * (512 * g.norm() + 128 * m.norm());
   Vector6d y;
-  y << g - m.cross(scaled.arm(0)) + (tied_gain ? -size / 4 : AnyNumber(rng) * reach) * n, m;
+  y << g - m.cross(scaled.arm(0)) + (tied_gain ? -size / 4 : AnySize(rng) * reach) * n, m;
   const Vector3d f = y.head<3>();
-  question.gravity = tied_gain ? Vector3d(UnitAcross(rng, f) + 16 * AnyNumber(rng) * kUnit * f)
-                               : Vector3d(-f + 0.1 * f.norm() * AnyPoint(rng));
+  question.gravity = tied_gain
+                         ? Vector3d(UnitAcross(rng, f) + 16 * AnySize(rng) * kUnit * f.normalized())
+                         : Vector3d(-f + 0.1 * f.norm() * AnyPoint(rng));
   const numeric::StabilityQuery query = question.Query();
   if (!ScaleContacts(query, &scaled)) return "a finite query was refused";
   ++tally->cases;
@@ -111,11 +115,12 @@ struct Tripod {
 
 Tripod MakeTripod(TieRng& rng, TieOf kind) {
   Tripod tripod;
-  tripod.f = Vector3d(0, 0, 1.2) + 0.2 * AnyPoint(rng);
+  // Half of them so that sums cancel without a trace of the rounding in their terms.
+  const bool plain = Below(rng, 2) == 0;
+  tripod.f = Vector3d(0, 0, 1) + (plain ? 0 : 0.2) * AnyPoint(rng);
   tripod.a = kind == TieOf::kBase ? std::ldexp(1.0, -30 - Below(rng, 24))
-                                  : std::ldexp(0.25, -Below(rng, 6));
-  const double scale = std::ldexp(64.0, Below(rng, 6));
-  tripod.lambda[0] = kind == TieOf::kWeight ? AnyNumber(rng) * scale * kUnit : 0.3;
+                                  : std::ldexp(0.5, -Below(rng, 3));
+  tripod.lambda[0] = kind == TieOf::kWeight ? AnySize(rng) * 0x1p-42 : 0.3;
   tripod.lambda[1] = 0.2 + 0.4 * std::abs(AnyNumber(rng));
   tripod.lambda[2] = 1 - tripod.lambda[0] - tripod.lambda[1];
   Vector3d q = Vector3d::Zero();
@@ -124,7 +129,7 @@ Tripod MakeTripod(TieRng& rng, TieOf kind) {
     const bool exact = contact.normal_error == 0;
     contact.n_W = exact ? Vector3d(0, 0, 1) : tripod.f.normalized();
     contact.friction += 0.8;
-    tripod.t[i] = AnyPoint(rng);
+    tripod.t[i] = plain ? GridPoint(rng, 2, 2) : AnyPoint(rng);
     q += tripod.lambda[i] * contact.x_W;
     tripod.question.contacts.push_back(contact);
   }
@@ -136,7 +141,7 @@ Tripod MakeTripod(TieRng& rng, TieOf kind) {
   const auto i = &contact - tripod.question.contacts.data();
   const Vector3d u = tripod.f + tripod.a * tripod.t[i];
   const double along = u.dot(contact.n_W), across = (u - along * contact.n_W).norm();
-  contact.friction = across / along * (1 + 64 * AnyNumber(rng) * kUnit);
+  contact.friction = across / along * (1 + 64 * AnySize(rng) * kUnit);
   return tripod;
 }
 
