@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 // A contact whose normal leaves its face's by more (cosine) is on an edge of the obstacle.
 constexpr double kFlat = 0.999;
 constexpr double kLongestPull = 0.05;  // of one step, any component (m, rad)
-constexpr double kMargin = 0.005;  // of a new contact to the border of its face (m)
+constexpr double kMargin = 0.005;      // of a new contact to the border of its face (m)
 
 /** One search for a posture. */
 class Search {
@@ -62,10 +62,11 @@ bool Search::Stable() {
   cguide::numeric::FindContacts(setting_.world, &ws_.guide.geometry, &ws_.guide.contacts);
   ws_.bearing.clear();
   for (const Contact& contact : ws_.guide.contacts) {
-    const bool bears = std::any_of(query_.bearing.begin(), query_.bearing.end(), [&](const Grip& g) {
-      return contact.object == setting_.faces[g.face].object &&
-             std::find(g.sites.begin(), g.sites.end(), contact.site) != g.sites.end();
-    });
+    const bool bears =
+        std::any_of(query_.bearing.begin(), query_.bearing.end(), [&](const Grip& g) {
+          return contact.object == setting_.faces[g.face].object &&
+                 std::find(g.sites.begin(), g.sites.end(), contact.site) != g.sites.end();
+        });
     if (bears) ws_.bearing.push_back(contact);
   }
   auto query = cguide::numeric::PlacedQuery(setting_.world, ws_.guide);
@@ -125,8 +126,8 @@ void Search::PushPoint(int body, const Vector3d& x_W, const Vector3d& n_W, doubl
   task.rate = rate;
 }
 
-// The first site in three directions, a second across their line, a third across their plane: six rows
-// fix a limb held by three sites or more.
+// The first site in three directions, a second across their line, a third across their plane: six
+// rows fix a limb held by three sites or more.
 void Search::PushHeld() {
   for (const Grip& grip : query_.held) {
     const int body = setting_.limbs[grip.limb].body;
@@ -169,7 +170,8 @@ void Search::PushWanted() {
 void Search::PushClearance() {
   const auto touching = [&](const cguide::numeric::Pair& pair) {
     const auto is = [&](const Grip& g) {
-      return setting_.limbs[g.limb].body == pair.body && setting_.faces[g.face].object == pair.other;
+      return setting_.limbs[g.limb].body == pair.body &&
+             setting_.faces[g.face].object == pair.other;
     };
     return !pair.self && (std::any_of(query_.held.begin(), query_.held.end(), is) ||
                           (query_.wanted && is(*query_.wanted)));
@@ -232,11 +234,12 @@ VectorXd Search::Pull(const Configuration& q) const {
   const Eigen::AngleAxisd turn(quaternion(query_.target.X_WB.q) * quaternion(q.X_WB.q).conjugate());
   v.segment<3>(3) = turn.angle() * turn.axis();
   v.tail(q.joints.size()) = query_.target.joints - q.joints;
-  return v * std::min(options_.pull, kLongestPull / std::max(v.cwiseAbs().maxCoeff(), kLongestPull));
+  return v *
+         std::min(options_.pull, kLongestPull / std::max(v.cwiseAbs().maxCoeff(), kLongestPull));
 }
 
-// The velocity nearest to the pull, in the weighted norm, that does the tasks: their stack is solved
-// for the difference.
+// The velocity nearest to the pull, in the weighted norm, that does the tasks: their stack is
+// solved for the difference.
 VectorXd Search::Solve(const Configuration& q) {
   const VectorXd pull = Pull(q);
   for (std::size_t i = 0; i < ws_.num_tasks; ++i) {

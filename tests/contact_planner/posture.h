@@ -35,15 +35,15 @@ struct PostureWorkspace {
 
 /** A posture is asked for in which ... */
 struct PostureQuery {
-  Stance held;                 ///< these touch where they are,
-  std::optional<Grip> wanted;  ///< this one touches anywhere on its face, drawn towards its at_W,
-  Stance bearing;              ///< these alone (a part of `held`) carry the weight,
+  Stance held;                   ///< these touch where they are,
+  std::optional<Grip> wanted;    ///< this one touches anywhere on its face, drawn towards its at_W,
+  Stance bearing;                ///< these alone (a part of `held`) carry the weight,
   cguide::Configuration target;  ///< and what freedom is left draws here.
 };
 
 struct PostureOptions {
   int iterations = 40;
-  double gap = 0.01;        ///< of a new contact to its face, inside the band of contact (m)
+  double gap = 0.01;         ///< of a new contact to its face, inside the band of contact (m)
   double tolerance = 0.003;  ///< of contacts' places and gaps (m)
   double clearance = 0.015;  ///< pairs nearer than this are drawn apart (m)
   double pull = 0.3;         ///< part of the way to the target that one step tries
@@ -58,8 +58,8 @@ struct Posture {
 /** Minimises the potential over postures of a stance: prioritised inverse kinematics (contacts,
  clearance, balance where it is missing, the new contact's place, root, joints), and of the iterates
  that are feasible the one of least potential. Feasible: within limits, in C_free, every contact in
- place and one that numeric::FindContacts finds, on its face; and the bearing contacts stable against
- their true friction cones (numeric::TryStability). Nothing where no iterate is. */
+ place and one that numeric::FindContacts finds, on its face; and the bearing contacts stable
+ against their true friction cones (numeric::TryStability). Nothing where no iterate is. */
 std::optional<Posture> FindPosture(const Setting& setting, const PostureQuery& query,
                                    const cguide::planner::GuidePotential& potential,
                                    const cguide::Configuration& start,

@@ -101,8 +101,8 @@ std::vector<Limb> LimbsOf(const cguide::Model& model, const std::vector<std::str
 }
 
 const Grip* FindGrip(const Stance& stance, int limb) {
-  const auto grip = std::find_if(stance.begin(), stance.end(),
-                                 [limb](const Grip& g) { return g.limb == limb; });
+  const auto grip =
+      std::find_if(stance.begin(), stance.end(), [limb](const Grip& g) { return g.limb == limb; });
   return grip == stance.end() ? nullptr : &*grip;
 }
 
@@ -119,13 +119,14 @@ Stance Without(Stance stance, int limb) {
 }
 
 bool Alike(const Stance& a, const Stance& b, double spacing) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [spacing](const Grip& g, const Grip& h) {
-    if (g.limb != h.limb || g.face != h.face || g.sites != h.sites) return false;
-    for (std::size_t i = 0; i < g.at_W.size(); ++i) {
-      if ((g.at_W[i] - h.at_W[i]).norm() > spacing) return false;
-    }
-    return true;
-  });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [spacing](const Grip& g, const Grip& h) {
+                      if (g.limb != h.limb || g.face != h.face || g.sites != h.sites) return false;
+                      for (std::size_t i = 0; i < g.at_W.size(); ++i) {
+                        if ((g.at_W[i] - h.at_W[i]).norm() > spacing) return false;
+                      }
+                      return true;
+                    });
 }
 
 std::string Describe(const Grip& grip, const std::vector<Limb>& limbs,

@@ -9,8 +9,8 @@
 
 namespace contact_planner {
 
-/** A rectangle of an obstacle that may be touched: centre + a u + b v, |a| <= half[0], |b| <= half[1],
- u and v unit. Boxes have six, a halfspace one (100 m wide). */
+/** A rectangle of an obstacle that may be touched: centre + a u + b v, |a| <= half[0], |b| <=
+ half[1], u and v unit. Boxes have six, a halfspace one (100 m wide). */
 struct Face {
   int object = -1;
   std::string name;
@@ -53,7 +53,8 @@ const Grip* FindGrip(const Stance& stance, int limb);
 Stance With(Stance stance, const Grip& grip);
 Stance Without(Stance stance, int limb);
 
-/** Whether the same limbs are on the same faces, none of their sites farther apart than `spacing`. */
+/** Whether the same limbs are on the same faces, none of their sites farther apart than `spacing`.
+ */
 bool Alike(const Stance& a, const Stance& b, double spacing);
 
 /** "right_foot on floor" and so on. */
