@@ -286,6 +286,17 @@ Configuration GuidePotential::At(double s) const {
   return At(point);
 }
 
+double GuidePotential::LargestShortcut(double step) const {
+  Require(step > 0, "step must be positive");
+  const double count = std::ceil(length() / step);
+  double largest = 0;
+  for (double i = 0; i <= count; ++i) {
+    const double s = count > 0 ? length() * i / count : 0;
+    largest = std::max(largest, length() - s - Value(At(s)));
+  }
+  return largest;
+}
+
 // The quaternion of the rotation from gamma to q is (cos a, n sin a) or its negative, a = acos|.|
 // the metric's angle and n the axis in W; turning q by omega dt about W changes a by n.omega / 2
 // dt.

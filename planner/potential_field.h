@@ -100,6 +100,13 @@ class GuidePotential {
     return At(Attractor(q, s_prev)).joints;
   }
 
+  /** How far V is below the remaining length on the guide, at worst: the largest (L - t) -
+   V(gamma(t)) over samples t at most `step` apart, ends included. Zero up to rounding says that at
+   no sample leaving the guide pays; between samples it is larger by (1 + w) step / 2 at most, since
+   both terms are Lipschitz. What is near L says that V hardly sees the guide: the weight is too
+   small. About L / step calls. */
+  double LargestShortcut(double step) const;
+
   /** dV/dt = gradient . v for the velocities [v_WB; omega_WB; joint rates] of Integrate. By the
    envelope theorem it is w times the gradient of d(., gamma(s*)) at q, wherever s* is the only
    minimum and no part of d is singular there. Singular: root positions, orientations or joints of q

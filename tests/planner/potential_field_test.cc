@@ -187,6 +187,7 @@ TEST_CASE("The potential strictly decreases along a guide of distortion up to th
       RC_ASSERT(value < last || potential.length() == 0);
       last = value;
     }
+    RC_ASSERT(potential.LargestShortcut(0.1) < kValueError);
   });
 }
 
@@ -209,6 +210,7 @@ TEST_CASE("Where a guide passes a place twice only a window tells the two passes
   REQUIRE(potential.length() == Approx(7));
   CHECK(potential.Value(AtPoint(0, 0)) == Approx(2));  // not 6: the loop may be left out
   CHECK(potential.Progress(AtPoint(0, 0)) == Approx(5));
+  CHECK(potential.LargestShortcut(0.25) == Approx(4));  // where the loop begins
   // Followed from the start, each hint the progress before, the value falls by what was walked.
   double s_prev = 0;
   for (double s = 0; s <= 7; s += 0.25) {
@@ -223,7 +225,9 @@ TEST_CASE("A right angle in one part of the metric has distortion sqrt 2") {
   PotentialOptions options;
   options.weight = std::sqrt(2.0);
   CHECK(GuidePotential(corner, options).Value(AtPoint(0.5, 0)) == Approx(1.5));
+  CHECK(GuidePotential(corner, options).LargestShortcut(0.1) < kValueError);
   options.weight = 1.3;
+  CHECK(GuidePotential(corner, options).LargestShortcut(0.1) > 0.01);
   CHECK(GuidePotential(corner, options).Value(AtPoint(0.5, 0)) < 1.5 - 0.01);
 }
 
@@ -312,6 +316,7 @@ TEST_CASE("Guides and options that make no potential are refused") {
   other.joints.setZero(5);
   CHECK_THROWS_AS(GuidePotential({q, other}), Error);
   CHECK_THROWS_AS(GuidePotential({q}).Value(other), Error);
+  CHECK_THROWS_AS(GuidePotential({q}).LargestShortcut(0), Error);
 }
 
 }  // namespace
