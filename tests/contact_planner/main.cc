@@ -79,19 +79,27 @@ SearchOptions MakeSearchOptions(const Arguments& arguments) {
   return options;
 }
 
-// Root first: a robot that holds on with hands and feet cannot follow a guide with every joint.
-cguide::planner::PotentialOptions MakePotentialOptions(const Arguments& arguments) {
+// Root first: a robot that holds on with hands and feet cannot follow a guide with every joint. The
+// weight is the first of a few with which leaving the guide never saves a tenth of it: below, the
+// potential would lead through what the guide goes round.
+cguide::planner::PotentialOptions MakePotentialOptions(
+    const Arguments& arguments, const std::vector<cguide::Configuration>& guide) {
   cguide::planner::PotentialOptions options;
-  options.weight = arguments.Number("weight", 2);
   options.metric.rotation = arguments.Number("rotation", 0.2);
-  options.metric.joints = arguments.Number("joints", 0.02);
+  options.metric.joints = arguments.Number("joints", 0.1);
+  for (const double weight : {1.5, 2.0, 3.0, 4.0, 6.0}) {
+    options.weight = arguments.Number("weight", weight);
+    const cguide::planner::GuidePotential potential(guide, options);
+    if (potential.LargestShortcut(0.02) <= 0.1 * potential.length()) break;
+  }
   return options;
 }
 
-void PrintRow(const std::string& guide, const std::string& drive, const SearchResult& r) {
-  std::printf("| %s | %s | %s | %zu | %zu | %ld | %.1f | %.2f | %d |\n", guide.c_str(),
-              drive.c_str(), ToString(r.stop), r.expanded.size(), r.nodes.size(), r.postures,
-              r.seconds, r.goal_distance, r.nodes[r.last].depth);
+void PrintRow(const std::string& guide, const std::string& drive, double weight,
+              const SearchResult& r) {
+  std::printf("| %s | %s | %.1f | %s | %zu | %zu | %ld | %.1f | %.2f | %d |\n", guide.c_str(),
+              drive.c_str(), weight, ToString(r.stop), r.expanded.size(), r.nodes.size(),
+              r.postures, r.seconds, r.goal_distance, r.nodes[r.last].depth);
   std::fflush(stdout);
 }
 
@@ -102,6 +110,7 @@ void PrintStances(const SearchResult& result) {
     std::printf("  %s: V %.3f, root %.3f %.3f %.3f\n", node.move.c_str(), node.value, p.x(), p.y(),
                 p.z());
   }
+  std::fflush(stdout);
 }
 
 void WriteSequence(const std::string& file, const Arguments& arguments, const io::Guide& guide,
@@ -139,14 +148,15 @@ Trial RunTrial(const Experiment& experiment, const std::string& file, std::uint6
   const Arguments& arguments = experiment.arguments;
   Trial trial{io::ReadGuide(file), std::filesystem::path(file).stem().string(), {}};
   const auto& waypoints = trial.guide.path.waypoints;
+  const auto options = MakePotentialOptions(arguments, waypoints);
   for (const std::string& drive : experiment.drives) {
     const bool guided = drive == "guide";
     const cguide::planner::GuidePotential potential(
-        guided ? waypoints : std::vector{waypoints.back()}, MakePotentialOptions(arguments));
+        guided ? waypoints : std::vector{waypoints.back()}, options);
     cguide::numeric::Rng rng(seed);
     trial.results.push_back(SearchStances(experiment.setting, waypoints.front(), waypoints.back(),
                                           potential, MakeSearchOptions(arguments), rng));
-    PrintRow(trial.name, drive, trial.results.back());
+    PrintRow(trial.name, drive, options.weight, trial.results.back());
     if (arguments.Has("stances")) PrintStances(trial.results.back());
   }
   return trial;
@@ -192,8 +202,9 @@ int Run(const Arguments& arguments) {
   Experiment experiment{arguments, setting, {"guide", "goal"}};
   if (arguments.Text("drive") != "both") experiment.drives = {arguments.Text("drive")};
   std::printf(
-      "| guide | driven by | outcome | expanded | stances | postures | CPU s | root from goal | "
-      "moves |\n|---|---|---|---|---|---|---|---|---|\n");
+      "| guide | driven by | weight | outcome | expanded | stances | postures | CPU s | root from "
+      "goal | "
+      "moves |\n|---|---|---|---|---|---|---|---|---|---|\n");
   const auto seed = static_cast<std::uint64_t>(arguments.Number("seed", 1));
   std::vector<Trial> trials;
   for (std::size_t k = 1; k < arguments.files.size(); ++k) {

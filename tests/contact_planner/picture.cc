@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 
 namespace contact_planner {
@@ -30,6 +31,7 @@ struct View {
 
 std::string Points(const View& view, const std::vector<Vector3d>& points) {
   std::ostringstream text;
+  text << std::fixed << std::setprecision(1);
   for (const Vector3d& x : points) text << view.Pixel(x)[0] << ',' << view.Pixel(x)[1] << ' ';
   return text.str();
 }
@@ -94,9 +96,12 @@ void DrawContacts(const View& view, const Setting& setting, const StanceNode& no
 void DrawSearch(const View& view, const Setting& setting, const SearchResult& result,
                 const std::vector<Vector3d>& guide, std::ostream& out) {
   DrawLine(view, guide, "stroke:#2166ac;stroke-width:5;stroke-opacity:0.25", out);
+  out << "<g style='fill:#c1272d;fill-opacity:0.4'>\n";
   for (const int i : result.expanded) {
-    DrawCircle(view, result.nodes[i].q.X_WB.p, 2.5, "fill:#c1272d;fill-opacity:0.4", out);
+    const Vector2d x = view.Pixel(result.nodes[i].q.X_WB.p);
+    out << "<circle cx='" << x[0] << "' cy='" << x[1] << "' r='2.5'/>\n";
   }
+  out << "</g>\n";
   std::vector<Vector3d> track;
   for (const int i : result.Sequence()) {
     track.push_back(result.nodes[i].transition.X_WB.p);
@@ -153,6 +158,7 @@ std::string Picture(const Setting& setting, const std::vector<cguide::Configurat
   View side{2, {lower.x(), lower.z()}, {upper.x(), upper.z()}, {2 * kGap + top.size()[0], kTitle}};
   const double row = kTitle + kGap + std::max(top.size()[1], side.size()[1]);
   std::ostringstream out;
+  out << std::fixed << std::setprecision(1);
   out << "<svg xmlns='http://www.w3.org/2000/svg' width='" << 3 * kGap + 2 * top.size()[0]
       << "' height='" << row * static_cast<double>(drawings.size())
       << "' font-family='sans-serif' font-size='14'>\n<rect width='100%' height='100%' "

@@ -17,7 +17,7 @@ struct SearchOptions {
   double place_sigma = 0.1;      ///< (m)
   double reach = 0.4;            ///< a limb is tried on faces nearer than this (m)
   double spacing = 0.04;         ///< stances whose contacts are nearer than this are one (m)
-  double step_cost = 0.01;       ///< added to the potential for every contact made or broken
+  double step_cost = 0.03;       ///< added to the potential for every contact made or broken
   double goal_tolerance = 0.15;  ///< of the root's pose, |p - p'| + acos|q.q'|
   PostureOptions posture;
 };
