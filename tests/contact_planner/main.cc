@@ -79,18 +79,20 @@ SearchOptions MakeSearchOptions(const Arguments& arguments) {
   return options;
 }
 
-// Root first: a robot that holds on with hands and feet cannot follow a guide with every joint. The
-// weight is the first of a few with which leaving the guide never saves a tenth of it: below, the
-// potential would lead through what the guide goes round.
+// Each drive with the weight of joints that serves it best (0.02, 0.1 and 0.3 were tried): a robot
+// that holds on with hands and feet cannot follow a guide with every joint. The price of leaving
+// the guide is the first of a few with which leaving it does not pay: below, the potential would
+// lead through what the guide goes round.
 cguide::planner::PotentialOptions MakePotentialOptions(
-    const Arguments& arguments, const std::vector<cguide::Configuration>& guide) {
+    const Arguments& arguments, const std::string& drive,
+    const std::vector<cguide::Configuration>& guide) {
   cguide::planner::PotentialOptions options;
   options.metric.rotation = arguments.Number("rotation", 0.2);
-  options.metric.joints = arguments.Number("joints", 0.1);
+  options.metric.joints = arguments.Number("joints", drive == "guide" ? 0.02 : 0.1);
   for (const double weight : {1.5, 2.0, 3.0, 4.0, 6.0}) {
     options.weight = arguments.Number("weight", weight);
     const cguide::planner::GuidePotential potential(guide, options);
-    if (potential.LargestShortcut(0.02) <= 0.1 * potential.length()) break;
+    if (potential.LargestShortcut(0.02) <= 0.001 * potential.length()) break;
   }
   return options;
 }
@@ -148,8 +150,8 @@ Trial RunTrial(const Experiment& experiment, const std::string& file, std::uint6
   const Arguments& arguments = experiment.arguments;
   Trial trial{io::ReadGuide(file), std::filesystem::path(file).stem().string(), {}};
   const auto& waypoints = trial.guide.path.waypoints;
-  const auto options = MakePotentialOptions(arguments, waypoints);
   for (const std::string& drive : experiment.drives) {
+    const auto options = MakePotentialOptions(arguments, drive, waypoints);
     const bool guided = drive == "guide";
     const cguide::planner::GuidePotential potential(
         guided ? waypoints : std::vector{waypoints.back()}, options);

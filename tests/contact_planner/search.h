@@ -12,7 +12,7 @@ namespace contact_planner {
 struct SearchOptions {
   int node_limit = 500;       ///< nodes expanded
   double time_limit_s = 120;  ///< CPU time
-  double lookahead = 0.5;     ///< postures are drawn to the guide this far ahead (metric)
+  double lookahead = 0.3;     ///< postures are drawn to the guide this far ahead (metric)
   int places = 3;  ///< places tried for a new contact: the guide's own and random ones near it
   double place_sigma = 0.1;      ///< (m)
   double reach = 0.4;            ///< a limb is tried on faces nearer than this (m)
