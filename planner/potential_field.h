@@ -48,16 +48,16 @@ struct GuidePoint {
  1. V >= 0, V(goal) = 0, and V(gamma(t)) <= L - t.
  2. |V(q) - V(q')| <= w d(q, q'): a minimum of functions of q, each w-Lipschitz by the triangle
     inequality. A hint keeps this for fixed s_prev: then V is the minimum over the window alone.
-    Between calls with different hints it is no law: V never is below the global one, and it jumps
+    Between calls with different hints it is no law: V is never below the one without, and it jumps
     where the window leaves the global minimum out.
- 3. No local minimum but V = 0: on the edge from q to gamma(s*), s* the argument of the minimum, d
- is additive, so V falls by at least w a unit; from gamma(s*) on along the guide V <= L - s falls
- on.
+ 3. No strict local minimum but V = 0: on an edge from q to gamma(s*), s* the argument of the
+    minimum, d is additive, so V falls by at least w a unit; and from gamma(s*) on along the guide
+    V <= L - s falls on.
  4. V(gamma(t)) = L - t for all t, and so V strictly decreases along the guide, iff w is at least
- the guide's distortion, the largest (s - t) / d(gamma(t), gamma(s)). (By definition of V.) A guide
-    that passes a place twice has none that is finite, and no function of q alone can decrease along
-    it; with a hint only |s - t| <= h counts. A turn by the angle a in one part of the metric, the
-    other parts at rest, has distortion 1 / cos(a / 2).
+    the guide's distortion, the largest (s - t) / d(gamma(t), gamma(s)); by definition of V. A guide
+    that passes a place twice has no finite one, and no function of q alone can decrease along it;
+    with a hint only |s - t| <= h counts. A turn by the angle a in one part of the metric, the other
+    parts at rest, has distortion 1 / cos(a / 2).
 
  Immutable: calls may come from several threads. Values are within 1e-9 of the formulas (1e-10 from
  the search, the rest rounding, for guides of length below 1e4). A few microseconds a call. */
@@ -72,7 +72,8 @@ class GuidePotential {
   /** L, in the metric. */
   double length() const;
 
-  /** L with |V(q) - V(q')| <= L Distance(q, q'). */
+  /** C with |V(q) - V(q')| <= C Distance(q, q'), but for the rounding of Distance, whose acos may
+   be 3e-8 off near 0. */
   double LipschitzConstant() const;
 
   /** The point whose cost is least: where to go, gamma(s*). */
