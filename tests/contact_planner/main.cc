@@ -79,18 +79,20 @@ SearchOptions MakeSearchOptions(const Arguments& arguments) {
   return options;
 }
 
-// Each drive with the weight of joints that serves it best (0.02, 0.1 and 0.3 were tried): a robot
-// that holds on with hands and feet cannot follow a guide with every joint. The price of leaving
-// the guide is the first of a few with which leaving it does not pay: below, the potential would
-// lead through what the guide goes round.
+// Each drive with what served it best of a few weights of the joints (0.02, 0.1, 0.3) and prices of
+// a unit off the guide (1.5 .. 4): a robot that holds on with hands and feet cannot follow a guide
+// with every joint, and where leaving the guide pays, the potential leads through what the guide
+// goes round.
 cguide::planner::PotentialOptions MakePotentialOptions(
     const Arguments& arguments, const std::string& drive,
     const std::vector<cguide::Configuration>& guide) {
   cguide::planner::PotentialOptions options;
   options.metric.rotation = arguments.Number("rotation", 0.2);
   options.metric.joints = arguments.Number("joints", drive == "guide" ? 0.02 : 0.1);
-  for (const double weight : {1.5, 2.0, 3.0, 4.0, 6.0}) {
-    options.weight = arguments.Number("weight", weight);
+  options.weight = arguments.Number("weight", 2);
+  if (drive != "guide" || arguments.Has("weight")) return options;
+  for (const double weight : {1.5, 2.0, 4.0, 8.0}) {
+    options.weight = weight;
     const cguide::planner::GuidePotential potential(guide, options);
     if (potential.LargestShortcut(0.02) <= 0.001 * potential.length()) break;
   }
