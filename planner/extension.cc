@@ -23,6 +23,19 @@ std::optional<Configuration> Steer(const Configuration& from, const Configuratio
   return Interpolate({from, target}, step / distance);
 }
 
+/** At most `max_nodes` chords of the flow from `from` towards `target`. */
+Chain Flow(const Configuration& from, const Configuration& target, int max_nodes,
+           const ExtensionContext& context) {
+  PathProjectionOptions options;
+  options.longest = context.options.step;
+  options.max_nodes = max_nodes;
+  ProjectedPath path =
+      ProjectPath(context.world, from, target, context.oracle, options, context.workspace);
+  context.counters->edges_tested += path.chords;
+  context.counters->edges_accepted += static_cast<long>(path.nodes.size());
+  return {std::move(path.nodes), path.stop == PathStop::kReached};
+}
+
 }  // namespace
 
 void PlannerCounters::Add(const PlannerCounters& other) {
@@ -57,6 +70,11 @@ std::optional<Configuration> MoveIntoSpace(const Configuration& q,
 std::optional<Configuration> Extend(const Configuration& from, const Configuration& target,
                                     const ExtensionContext& context) {
   ++context.counters->extensions;
+  if (context.options.link == Link::kFlow && context.options.space == numeric::Space::kGuide) {
+    Chain chain = Flow(from, target, 1, context);
+    if (chain.nodes.empty()) return std::nullopt;
+    return std::move(chain.nodes.front());
+  }
   const auto stepped = Steer(from, target, context.options.step);
   if (!stepped) return std::nullopt;
   auto q = MoveIntoSpace(*stepped, context);
@@ -73,6 +91,9 @@ std::optional<Configuration> Extend(const Configuration& from, const Configurati
 
 Chain Connect(const Configuration& from, const Configuration& target,
               const ExtensionContext& context) {
+  if (context.options.link == Link::kFlow && context.options.space == numeric::Space::kGuide) {
+    return Flow(from, target, context.options.max_chain, context);
+  }
   Chain chain;
   Configuration at = from;
   for (int i = 0; i < context.options.max_chain; ++i) {

@@ -5,13 +5,21 @@
 #include <vector>
 
 #include "cguide/exact/core/path.h"
+#include "cguide/planner/path_projection.h"
 #include "cguide/planner/projection.h"
 
 namespace cguide::planner {
 
+/** How two configurations are linked. */
+enum class Link {
+  kStraight,  ///< steps of the straight way, each projected by Algorithm 3
+  kFlow       ///< the flow along the contacts that bear force (path_projection.h)
+};
+
 struct ExtensionOptions {
-  double step = 0.25;      ///< length of an extension before projection (metric of path.h)
-  double max_stretch = 2;  ///< a projected extension longer than this times `step` is refused
+  Link link = Link::kStraight;  ///< the flow takes two to three times as long for as much
+  double step = 0.25;           ///< length of an extension before projection (metric of path.h)
+  double max_stretch = 2;       ///< a projected extension longer than this times `step` is refused
   double min_progress =
       0.1;             ///< an extension must come nearer to its target by this part of `step`
   int max_chain = 60;  ///< extensions of one connection

@@ -5,6 +5,8 @@
 #include <sstream>
 
 #include "cguide/numeric/describe.h"
+#include "cguide/verify/report/text_internal.h"
+#include "cguide/verify/skin_hint.h"
 
 namespace cguide::verify {
 namespace {
@@ -142,7 +144,9 @@ std::string DescribeViolation(const Model& model, const Violation& v) {
       return sure ? "no contact" : "contact undecided: within rounding of the band's end";
     case Obstruction::kCollision:
       if (!sure) return DescribePair(model, v.pair) + " undecided: touching within rounding";
-      return DescribePair(model, v.pair) + " overlap by about " + Millimetres(v.depth);
+      return DescribePair(model, v.pair) + (v.depth < 1e-9
+                                                ? " touch, or overlap by less than a nanometre"
+                                                : " overlap by about " + Millimetres(v.depth));
     case Obstruction::kUnstable: {
       if (!sure) {
         return "balance undecided: " +
@@ -188,6 +192,7 @@ std::string WriteAuditText(const AuditSubject& subject, const Model& model,
     if (v.samples > 1) text << " .. " << Short(v.s_last) << " (worst " << Short(v.s_worst) << ")";
     text << ", length " << Short(v.length) << ": " << DescribeViolation(model, v) << '\n';
   }
+  for (const std::string& hint : SkinHints(model, audit)) text << "  " << hint << '\n';
   text << "answers\n";
   WriteStages("pairs       ", audit.collision, &text);
   WriteStages("balance     ", audit.stability, &text);
@@ -199,8 +204,8 @@ std::string WriteAuditJson(const AuditSubject& subject, const Model& model,
   Json json;
   json["schema"] = "cguide-audit/1";
   json["tool_version"] = subject.tool_version;
-  json["path"] = subject.path_file;
-  json["problem"] = subject.problem_file;
+  json["path"] = report::CleanUtf8(subject.path_file);
+  json["problem"] = report::CleanUtf8(subject.problem_file);
   json["model_digest"] = subject.model_digest;
   json["verdict"] = VerdictName(audit.verdict);
   json["edges_tested"] = "sampled(" + Short(audit.step) + ")";
@@ -220,6 +225,8 @@ std::string WriteAuditJson(const AuditSubject& subject, const Model& model,
   json["worst"]["force_margin"] = ExtremeJson(audit.force_margin);
   json["violations"] = Json::array();
   for (const Violation& v : audit.violations) json["violations"].push_back(ViolationJson(model, v));
+  const std::vector<std::string> hints = SkinHints(model, audit);
+  if (!hints.empty()) json["hints"] = hints;
   return json.dump(1) + "\n";
 }
 

@@ -7,7 +7,8 @@
 
 namespace cguide::verify {
 
-/** Where the audited path came from. */
+/** Where the audited path came from. File names may be any bytes; reports for programs have U+FFFD
+ for what is not UTF-8. */
 struct AuditSubject {
   std::string path_file;
   std::string problem_file;

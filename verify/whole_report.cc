@@ -4,6 +4,8 @@
 #include <sstream>
 
 #include "cguide/numeric/describe.h"
+#include "cguide/verify/report/text_internal.h"
+#include "cguide/verify/skin_hint.h"
 
 namespace cguide::verify {
 namespace {
@@ -105,6 +107,7 @@ std::string WriteWholeText(const AuditSubject& subject, const Model& model,
            << Short(v.length) << ": " << DescribeViolation(model, v) << '\n';
     }
   }
+  for (const std::string& hint : SkinHints(model, audit)) text << "  " << hint << '\n';
   if (!(audit.robust == check::Robustness{})) {
     text << "  proved: for " << DescribeRobustness(audit.robust) << '\n';
   }
@@ -120,8 +123,8 @@ std::string WriteWholeJson(const AuditSubject& subject, const Model& model,
   Json json;
   json["schema"] = "cguide-audit-whole/1";
   json["tool_version"] = subject.tool_version;
-  json["path"] = subject.path_file;
-  json["problem"] = subject.problem_file;
+  json["path"] = report::CleanUtf8(subject.path_file);
+  json["problem"] = report::CleanUtf8(subject.problem_file);
   json["model"] = subject.model_digest;
   json["edges_tested"] = "whole";
   json["skin_m"] = model.contact.skin;
@@ -151,6 +154,8 @@ std::string WriteWholeJson(const AuditSubject& subject, const Model& model,
     }
     json["edges"].push_back(entry);
   }
+  const std::vector<std::string> hints = SkinHints(model, audit);
+  if (!hints.empty()) json["hints"] = hints;
   return json.dump(2) + "\n";
 }
 

@@ -75,6 +75,31 @@ says "/robust/pose"
 altered '"tool"' '"robust": {"pose": 0}, "tool"'
 expect 3 "$work/altered.json"
 
+# 0 and 1: the path of a guide, number for number
+guide() { # START-X JOINTS WAYPOINTS-MORE
+  printf '{"schema": "cguide-guide/1", "seed": 3, "joint_names": [%s], "waypoints": [
+    {"root": {"x": %s, "y": 0, "z": 0.11, "qx": -0.0, "qy": 0, "qz": 0, "qw": 1.0}, "joints": []},
+    {"root": {"x": 0.1, "y": 0.1, "z": 0.11, "qx": 0, "qy": 0, "qz": 0, "qw": 1}, "joints": []}%s]}' "$2" "$1" "$3" \
+    >"$work/guide.json"
+}
+guide 0 "" ""
+expect 0 "$certificates/block.json" --guide "$work/guide.json"
+expect 0 "$certificates/block.json" --guide "$work/guide.json" --model "$work/model.json" --precise 80
+guide 1e-300 "" ""
+expect 1 "$certificates/block.json" --guide "$work/guide.json"
+says "refused: the certificate is about another path than $work/guide.json: waypoint 0 is another"
+guide 0 "" ', {"root": {"x": 0, "y": 0, "z": 0, "qx": 0, "qy": 0, "qz": 0, "qw": 1}, "joints": []}'
+expect 1 "$certificates/block.json" --guide "$work/guide.json"
+says "it has 2 waypoints, not 3"
+guide 0 '"elbow"' ""
+expect 3 "$certificates/block.json" --guide "$work/guide.json"
+says "$work/guide.json: /waypoints/0/joints: "
+expect 3 "$certificates/block.json" --guide "$certificates/block.json"
+says "/schema"
+expect 3 "$certificates/block.json" --guide "$work/none.json"
+says "none.json"
+expect 2 "$certificates/block.json" --guide
+
 # 1: refused, with edge and reason
 altered '[-1, -1, 0]' '[1, -1, 0]'
 expect 1 "$work/altered.json"

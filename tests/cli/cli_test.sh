@@ -161,6 +161,28 @@ section_limits() {
   [ "$code" = 130 ] || fail "interrupted, but exit code $code"
   [ ! -e "$work/none.json" ] || fail "an interrupted plan left a guide"
   ls "$work" | grep -q '\.tmp\|~' && fail "temporary files are left"
+  interrupted_audit
+}
+
+# An interrupted audit ends with 130, but with 1 where it had refuted the path: that is final.
+interrupted_audit() {
+  "$program" model -q "$room" | node -e '
+    const model = JSON.parse(require("fs").readFileSync(0, "utf8"));
+    const joints = model.joints.filter(j => j.type !== "fixed" && !j.mimic).map(j => j.name);
+    const rows = [["x", "y", "z", "qx", "qy", "qz", "qw"].concat(joints)];
+    for (let i = 0; i < 20000; ++i) rows.push([i * 1e-4, 0, 0.5, 0, 0, 0, 1].concat(joints.map(() => 0)));
+    console.log(rows.map(r => r.join(",")).join("\n"));
+  ' >"$work/sunk.csv"
+  "$program" audit "$work/sunk.csv" --problem "$room" --format json -o "$work/sunk.report" --threads 1 \
+    >/dev/null 2>&1 &
+  local pid=$! code=0
+  sleep 2
+  kill -TERM "$pid"
+  wait "$pid" || code=$?
+  grep -q '"done": false' "$work/sunk.report" || fail "the audit was not interrupted"
+  local wanted=130
+  grep -q '"verdict": "refuted"' "$work/sunk.report" && wanted=1
+  [ "$code" = "$wanted" ] || fail "interrupted audit: exit code $code instead of $wanted"
 }
 
 # One path as CSV, OMPL's matrix and MoveIt's messages: one report, but for the file's name.
@@ -233,7 +255,31 @@ section_foreign_path() {
   says "floor"
 }
 
+section_recorded_motion() {
+  # Feet at z = 0, as recordings have them: proved with a skin, and without the report says what to do.
+  local recorded=$fixtures/problems/recorded.yaml motion
+  sed -e 's/skin_m: 0.001/skin_m: 0/' -e "s|\.\./robots|$fixtures/robots|g" "$recorded" >"$work/bare.yaml"
+  for motion in standing squatting; do
+    expect 0 audit "$fixtures/paths/$motion.csv" --problem "$recorded"
+    says "edges proved for every s"
+    says "below the skin of 1 mm"
+    expect 1 audit "$fixtures/paths/$motion.csv" --problem "$work/bare.yaml"
+    says '"LLEG_JOINT5" and "floor"'
+    says "if they are meant to touch, give a contact.skin_m"
+    expect 1 audit "$fixtures/paths/$motion.csv" --problem "$work/bare.yaml" --dense 0.05
+    says "if they are meant to touch, give a contact.skin_m"
+  done
+}
+
 section_bad_input() {
+  # A file name of any bytes is no reason to fail; what is not UTF-8 is replaced in the reports for programs.
+  local odd=$work/$'odd\xff.json'
+  expect 0 plan "$room" -o "$odd"
+  expect 0 audit "$odd" --format json
+  says $'odd\xEF\xBF\xBD.json'
+  expect 0 audit "$odd" --dense 0.1 --format json
+  says $'odd\xEF\xBF\xBD.json'
+  expect 0 stability --guide "$odd" --at 0 --format json
   expect 3 plan "$work/absent.yaml" -o "$work/out.json"
   says absent.yaml
   expect 3 plan "$a1" -o "$work/no/such/folder/out.json"

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstdint>
 #include <random>
 
 #include "cguide/exact/core/rational.h"
@@ -24,6 +25,16 @@ inline double GridValue(TieRng& rng, int k_max, double denominator) {
 inline Eigen::Vector3d GridPoint(TieRng& rng, int k_max, double denominator) {
   const double x = GridValue(rng, k_max, denominator), y = GridValue(rng, k_max, denominator);
   return {x, y, GridValue(rng, k_max, denominator)};
+}
+
+/** In [-1, 1], with all its bits in use. */
+inline double AnyNumber(TieRng& rng) {
+  return std::ldexp(static_cast<double>(static_cast<std::int64_t>(rng())), -63);
+}
+
+inline Eigen::Vector3d AnyPoint(TieRng& rng) {
+  const double x = AnyNumber(rng), y = AnyNumber(rng);
+  return {x, y, AnyNumber(rng)};
 }
 
 /** 0 one time in four, else +- 2^-31 .. 2^-50: of these the larger ones are for doubles to decide,

@@ -10,6 +10,9 @@
 // (a supporting line of the hull, or of the strictly convex K, gives a supporting wrench), else
 // outside.
 //
+// The numbers of such a stance are few bits wide, or ("fine") as wide as doubles are on a plane
+// across an axis; the centre of mass and the pull are then within some units of rounding of a tie.
+//
 // Bracketed stances: contacts on floors, slopes and walls, and two centres of mass at most 2^-30 m
 // apart of which one is proved stable and the other unstable.
 #include <optional>
@@ -85,6 +88,31 @@ FlatStance RandomFlatStance(TieRng& rng) {
   return stance;
 }
 
+// Points of a plane across an axis: any two doubles and the same third.
+FlatStance RandomFineStance(TieRng& rng) {
+  const int axis = Below(rng, 3), a = (axis + 1) % 3, b = (axis + 2) % 3;
+  FlatStance stance;
+  stance.w = Vector3d::Unit(axis);
+  stance.mu = 0.2 + std::abs(AnyNumber(rng));
+  const Vector3d p0 = AnyPoint(rng);
+  const double width = 0.1 + 0.2 * std::abs(AnyNumber(rng));
+  const auto at = [&](double x, double y) {
+    Vector3d p = p0;
+    p[a] += width * x;
+    p[b] += width * y;
+    return p;
+  };
+  // Counter-clockwise and convex with room for the small displacements.
+  const double e = 0.2 * AnyNumber(rng), f = 0.2 * AnyNumber(rng);
+  stance.corners = {p0, at(1 + e, e), at(1 + f, 1 + e)};
+  if (Below(rng, 4) != 0) stance.corners.push_back(at(f, 1 + f));
+  const Plane plane{stance.w, Vector3d::Unit(a), Vector3d::Unit(b), 1};
+  for (const Vector3d& p : stance.corners) {
+    stance.contacts.push_back(ContactAt(p, plane, stance.mu));
+  }
+  return stance;
+}
+
 enum class Place { kInside, kOn, kOutside };
 
 Place PlaceOf(int sign) {
@@ -155,6 +183,24 @@ FlatTie MakeFlatTie(TieRng& rng, const FlatStance& stance) {
   tie.com = q - (1 + Below(rng, 8)) / 64.0 * tie.gravity;
   tie.com += TinyStep(rng) * Vector3d(GridPoint(rng, 2, 4));
   if (on_cone) tie.gravity += TinyStep(rng) * Vector3d(GridPoint(rng, 2, 4));
+  return tie;
+}
+
+FlatTie MakeFineTie(TieRng& rng, const FlatStance& stance) {
+  const auto n = stance.corners.size();
+  const std::size_t i = rng() % n;
+  const Vector3d &p = stance.corners[i], &next = stance.corners[(i + 1) % n];
+  const bool on_cone = Below(rng, 2) == 0;
+  const Vector3d across = stance.w.cross(AnyPoint(rng)).normalized();
+  const double slope = on_cone ? stance.mu : 0.9 * stance.mu * std::abs(AnyNumber(rng));
+  const double far = std::ldexp(1.0, -53 + Below(rng, 8));  // some units of rounding or many
+  FlatTie tie;
+  tie.gravity = 9.81 * (slope * across - stance.w);
+  if (on_cone) tie.gravity += 8 * far * AnyPoint(rng);
+  const bool both = Below(rng, 4) == 0;
+  Vector3d q = p + std::abs(AnyNumber(rng)) * (next - p);
+  if (on_cone && !both) q = (2 * p + next + stance.corners[(i + 2) % n]) / 4;
+  tie.com = q - 0.1 * std::abs(AnyNumber(rng)) * tie.gravity + far * AnyPoint(rng);
   return tie;
 }
 
@@ -243,10 +289,14 @@ std::string CheckBracket(TieRng& rng, numeric::StabilityWorkspace* workspace, Ta
 
 std::string TiesOfStability(TieRng& rng, long every, Tally* tally) {
   numeric::StabilityWorkspace workspace;
-  if (Below(rng, 2) == 0) return CheckBracket(rng, &workspace, tally);
-  const FlatStance stance = RandomFlatStance(rng);
+  const int kind = Below(rng, 4);
+  if (kind == 0) return CheckBracket(rng, &workspace, tally);
+  if (kind == 1) return TiesOfStabilityCertificates(rng, tally);
+  const bool fine = kind == 2;
+  const FlatStance stance = fine ? RandomFineStance(rng) : RandomFlatStance(rng);
   for (int k = 0; k < 16; ++k) {
-    const std::string wrong = CheckFlat(stance, MakeFlatTie(rng, stance), every, &workspace, tally);
+    const FlatTie tie = fine ? MakeFineTie(rng, stance) : MakeFlatTie(rng, stance);
+    const std::string wrong = CheckFlat(stance, tie, every, &workspace, tally);
     if (!wrong.empty()) return wrong;
   }
   return "";

@@ -43,6 +43,9 @@ using TieCheck = std::string (*)(std::mt19937_64& rng, long every, Tally*);
 std::string TiesOfCones(std::mt19937_64& rng, long every, Tally* tally);
 std::string TiesOfFacets(std::mt19937_64& rng, long every, Tally* tally);
 std::string TiesOfStability(std::mt19937_64& rng, long every, Tally* tally);
+/** Of TiesOfStability a share, counted with it: proposals for its certificates that are nearly, or
+ barely, proofs. Near is not the verdict's boundary then, but that of what may be accepted. */
+std::string TiesOfStabilityCertificates(std::mt19937_64& rng, Tally*);
 std::string TiesOfDistance(std::mt19937_64& rng, long every, Tally* tally);
 std::string TiesOfTriangles(std::mt19937_64& rng, long every, Tally* tally);
 std::string TiesOfClearance(std::mt19937_64& rng, long every, Tally* tally);

@@ -126,6 +126,16 @@ TEST_CASE("the text report names places, values and stages") {
   CHECK(text.find("proved") == std::string::npos);
 }
 
+TEST_CASE("a file name that is not UTF-8 has its bytes replaced in the report for programs") {
+  const Room room("floor");
+  const Path path = PathOf(room, {room.problem.start});
+  const AuditSubject subject{"a\xFF.json", "\xC3.yaml", "d", "v"};
+  const auto json =
+      nlohmann::json::parse(WriteAuditJson(subject, room.problem.model, Audit(room, path, 0.1)));
+  CHECK(json["path"] == "a\xEF\xBF\xBD.json");
+  CHECK(json["problem"] == "\xEF\xBF\xBD.yaml");
+}
+
 TEST_CASE("a path of another robot is refused") {
   const Room room("floor");
   Path path = PathOf(room, {room.problem.start});

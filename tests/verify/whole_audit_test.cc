@@ -118,4 +118,27 @@ TEST_CASE("An interrupted audit says what it did not reach") {
   CHECK(text.find("1 not reached") != std::string::npos);
 }
 
+TEST_CASE("A path that is refuted before the interruption stays refuted") {
+  const Room room;
+  Configuration far = room.problem.start;
+  far.X_WB.p.z() -= 0.2;
+  std::atomic<bool> stop{false};
+  WholeAuditOptions options;
+  options.interrupt = &stop;
+  options.on_progress = [&stop](int, int) { stop = true; };
+  const WholeAudit audit =
+      AuditWhole(room.world, room.PathOf(std::vector<Configuration>(9, far)), options);
+  CHECK(audit.edges_done == 1);
+  CHECK(audit.verdict == Verdict::kFails);
+}
+
+TEST_CASE("A file name that is not UTF-8 has its bytes replaced in the report for programs") {
+  const Room room;
+  const WholeAudit audit = AuditWhole(room.world, room.PathOf({room.problem.start}), {});
+  const AuditSubject subject{"a\xFF.json", "\xC3.yaml", "d", "v"};
+  const auto json = nlohmann::json::parse(WriteWholeJson(subject, room.problem.model, audit));
+  CHECK(json["path"] == "a\xEF\xBF\xBD.json");
+  CHECK(json["problem"] == "\xEF\xBF\xBD.yaml");
+}
+
 }  // namespace cguide::verify

@@ -157,6 +157,15 @@ std::vector<Edge> EdgesOf(const Path& path);
  @throws Error (kBadInput) that names the place. */
 Certificate ParseCertificate(const std::string& text);
 
+/** The path of a guide file (schema cguide-guide/1): its joint_names and waypoints. Its other keys
+ say how it came about and are not looked at. Limits as for certificates.
+ @throws Error (kBadInput) that names the place. */
+Path ParseGuidePath(const std::string& text);
+
+/** Where two paths differ, in words; empty where joint names and waypoints are the same, every
+ number the same real number. */
+std::string DifferenceOf(const Path& certified, const Path& guide);
+
 /** The text in which the canonical model stands in a certificate, byte for byte, or nothing where
  the certificate does not begin as FORMAT.md says. */
 bool HasModelText(const std::string& certificate, const std::string& model_file);

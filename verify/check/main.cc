@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// cguide-check CERTIFICATE [--model model.json] [--precise BITS]
+// cguide-check CERTIFICATE [--model model.json] [--guide guide.json] [--precise BITS]
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -15,10 +15,11 @@ namespace {
 constexpr int kProved = 0, kRefused = 1, kUsage = 2, kBadInput = 3, kIncomplete = 4, kInternal = 70;
 
 constexpr const char* kHelp =
-    "usage: cguide-check CERTIFICATE [--model model.json] [--precise BITS]\n"
+    "usage: cguide-check CERTIFICATE [--model model.json] [--guide guide.json] [--precise BITS]\n"
     "Re-checks every proof of a certificate with intervals and kinematics of its own.\n"
     "  --model FILE     the certificate must carry this canonical model, byte for byte\n"
     "                   (write it with: cguide model PROBLEM -o model.json)\n"
+    "  --guide FILE     the certificate must be about the path of this guide\n"
     "  --precise BITS   MPFR numbers of so many bits (53 to 4096) instead of doubles\n"
     "exit: 0 the whole path is proved, 1 refused, 2 usage, 3 not a certificate,\n"
     "      4 what is there holds, but edges have no proof\n";
@@ -26,6 +27,7 @@ constexpr const char* kHelp =
 struct Arguments {
   std::string certificate;
   std::string model;
+  std::string guide;
   int bits = 0;
 };
 
@@ -33,10 +35,12 @@ std::optional<Arguments> Parse(int argc, char** argv) {
   Arguments arguments;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
-    const bool has_value = word == "--model" || word == "--precise";
+    const bool has_value = word == "--model" || word == "--guide" || word == "--precise";
     if (has_value && i + 1 == argc) return std::nullopt;
     if (word == "--model") {
       arguments.model = argv[++i];
+    } else if (word == "--guide") {
+      arguments.guide = argv[++i];
     } else if (word == "--precise") {
       char* end = nullptr;
       const long bits = std::strtol(argv[++i], &end, 10);
@@ -69,6 +73,21 @@ std::string ReadFile(const std::string& name) {
   return text;
 }
 
+/** Says whether the certificate is about the path of a guide. A file that is no guide is named. */
+bool IsAboutGuide(const cguide::check::Certificate& certificate, const std::string& file) {
+  cguide::Path guide;
+  try {
+    guide = cguide::check::ParseGuidePath(ReadFile(file));
+  } catch (const cguide::Error& e) {
+    throw cguide::Error(e.code(), file + ": " + e.what());
+  }
+  const std::string difference = cguide::check::DifferenceOf(certificate.path, guide);
+  if (difference.empty()) return true;
+  std::cout << "refused: the certificate is about another path than " << file << ": " << difference
+            << "\n";
+  return false;
+}
+
 int Run(const Arguments& arguments) {
   const std::string text = ReadFile(arguments.certificate);
   const cguide::check::Certificate certificate = cguide::check::ParseCertificate(text);
@@ -76,6 +95,7 @@ int Run(const Arguments& arguments) {
     std::cout << "refused: the certificate is about another model than " << arguments.model << "\n";
     return kRefused;
   }
+  if (!arguments.guide.empty() && !IsAboutGuide(certificate, arguments.guide)) return kRefused;
   const auto report = cguide::check::CheckCertificate(certificate, {arguments.bits});
   for (const std::string& line : report.refused) std::cout << "refused: " << line << "\n";
   if (!report.missing.empty()) {

@@ -82,9 +82,7 @@ std::vector<check::EdgeProof> KnownProofs(const AuditArguments& arguments, const
   } catch (const Error& e) {
     throw Error(e.code(), arguments.certificate + ": " + e.what() + "; remove it to begin anew");
   }
-  if (!(known.model == subject.problem.model) || known.path.waypoints != subject.path.waypoints ||
-      known.path.joint_names != subject.path.joint_names ||
-      !(known.robust == ParseRobustness(arguments.robust))) {
+  if (!IsAbout(known, subject) || !(known.robust == ParseRobustness(arguments.robust))) {
     throw Error(Error::Code::kBadInput,
                 arguments.certificate +
                     ": it is about another model, box of models or path; remove it or name another "

@@ -42,7 +42,8 @@ struct PlanArguments {
   std::string certificate;       ///< file that takes the proofs, or empty
   std::string robust;            ///< "mu=0.05,pose_mm=2,com_mm=5": of every model in the box
   double edge_step = 0.005;
-  double extension = 0;  ///< 0: the planner's default
+  double extension = 0;           ///< 0: the planner's default
+  std::string link = "straight";  ///< straight, flow
   int shortcut_rounds = 120;
   std::string stats;  ///< file for times and counters, or empty
 };
@@ -59,6 +60,17 @@ struct AuditArguments {
   bool resume = false;          ///< take the proofs that `certificate` has
   std::string critical;         ///< "mu": ask how much friction the path needs
   std::string robust;           ///< "mu=0.05,pose_mm=2,com_mm=5": prove a box of models
+  std::string list;             ///< file that names paths, instead of `path`
+  std::string folder;           ///< with `list`: takes reports, certificates and manifest
+  int shard = 1;                ///< with `list`: of `shards`
+  int shards = 1;
+};
+
+struct MergeArguments {
+  CommonArguments common;
+  std::string folder;
+  int expect = 1;               ///< how many shards
+  std::string format = "text";  ///< text, json
 };
 
 struct StabilityArguments {
@@ -93,6 +105,8 @@ struct ViewArguments {
 /** Each runs one command and returns its exit code; errors leave as cguide::Error. */
 int RunPlan(const PlanArguments& arguments);
 int RunAudit(const AuditArguments& arguments);
+int RunAuditList(const AuditArguments& arguments);
+int RunMerge(const MergeArguments& arguments);
 int RunStability(const StabilityArguments& arguments);
 int RunModel(const ModelArguments& arguments);
 int RunDoctor(const DoctorArguments& arguments);

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <functional>
 #include <iostream>
 
@@ -59,6 +60,10 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
       ->capture_default_str();
   c->add_option("--extension", a->extension, "Length of an extension of a tree")
       ->check(CLI::Range(0.01, 10.0));
+  c->add_option("--link", a->link,
+                "straight: projected steps; flow: along the contacts that bear force")
+      ->check(CLI::IsMember({"straight", "flow"}))
+      ->capture_default_str();
   c->add_option("--shortcuts", a->shortcut_rounds, "Rounds of shortcutting")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
@@ -67,13 +72,53 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
   return c;
 }
 
+constexpr int kMostShards = 1'000'000;
+
+/** Takes "i/n" apart. */
+void ReadShard(const std::string& text, AuditArguments* a) {
+  const char* end = text.data() + text.size();
+  const auto [slash, i_code] = std::from_chars(text.data(), end, a->shard);
+  const bool has_i = i_code == std::errc() && slash != end && *slash == '/';
+  const auto [rest, n_code] = std::from_chars(has_i ? slash + 1 : end, end, a->shards);
+  const bool fits = has_i && n_code == std::errc() && rest == end && 1 <= a->shard &&
+                    a->shard <= a->shards && a->shards <= kMostShards;
+  if (!fits) throw CLI::ValidationError("--shard", text + " is not i/n with 1 <= i <= n");
+}
+
+void AddList(CLI::App* c, CLI::Option* path, AuditArguments* a) {
+  CLI::Option* list =
+      c->add_option(
+           "--list", a->list,
+           "File of paths to audit whole, one a line: PATH, or PATH, a tab and its PROBLEM")
+          ->excludes(path);
+  CLI::Option* out =
+      c->add_option("--out", a->folder, "Folder that takes reports and certificates")->needs(list);
+  list->needs(out);
+  c->add_option_function<std::string>(
+       "--shard", [a](const std::string& text) { ReadShard(text, a); },
+       "i/n: audit every n-th path of the list from the i-th on; default: 1/1")
+      ->needs(list);
+}
+
+/** What options cannot say one by one. */
+void RequireAuditable(const CLI::Option& path, const AuditArguments& a) {
+  if (path.count() == 0 && a.list.empty()) throw CLI::RequiredError("path or --list");
+  if (a.resume && a.certificate.empty() && a.list.empty()) {
+    throw CLI::RequiresError("--resume", "--certificate or --list");
+  }
+  if (!a.list.empty() && a.format != "text" && a.format != "json") {
+    throw CLI::ValidationError("--format", "with --list: text or json");
+  }
+}
+
 CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
   CLI::App* c =
       app.add_subcommand("audit", "Say whether a guide or a foreign path stays in C_guide");
-  c->add_option("path", a->path, "Guide, or a path of CSV, OMPL or MoveIt with --problem")
-      ->required();
+  CLI::Option* path =
+      c->add_option("path", a->path, "Guide, or a path of CSV, OMPL or MoveIt with --problem");
   c->add_option("--problem", a->problem, "Problem file; default: the one the guide names");
   AddReading(c, &a->reading);
+  AddList(c, path, a);
   c->add_option("--dense", a->dense_step,
                 "Sample every edge at this step; default: prove whole edges")
       ->check(CLI::Range(1e-6, 1.0));
@@ -84,8 +129,8 @@ CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
   c->add_option("--certificate", a->certificate, "File that takes the proofs, for cguide-check")
       ->excludes("--dense");
   c->add_flag("--resume", a->resume,
-              "Re-check the proofs that the certificate already has, and look for the others")
-      ->needs("--certificate");
+              "Re-check the proofs that the certificate already has, and look for the others; with "
+              "--list: pass over the paths that are finished");
   c->add_option("--critical", a->critical,
                 "mu: the smallest share of the friction with which the path is still proved")
       ->check(CLI::IsMember({"mu"}))
@@ -97,6 +142,23 @@ CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
       ->check(CLI::Validator(RobustnessProblem, "BOX"))
       ->excludes("--dense")
       ->excludes("--critical");
+  AddCommon(c, &a->common);
+  for (const char* alone : {"--dense", "--output", "--certificate", "--critical"}) {
+    c->get_option("--list")->excludes(alone);
+  }
+  c->parse_complete_callback([path, a] { RequireAuditable(*path, *a); });
+  return c;
+}
+
+CLI::App* AddMerge(CLI::App& app, MergeArguments* a) {
+  CLI::App* c = app.add_subcommand("merge", "Join the shards of an audited list into its summary");
+  c->add_option("folder", a->folder, "Folder that was given to audit --out")->required();
+  c->add_option("--expect", a->expect, "How many shards there have to be")
+      ->required()
+      ->check(CLI::Range(1, kMostShards));
+  c->add_option("--format", a->format, "Form of the summary on stdout")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->capture_default_str();
   AddCommon(c, &a->common);
   return c;
 }
@@ -161,13 +223,16 @@ int Main(int argc, char** argv) {
   app.require_subcommand(1);
   PlanArguments plan;
   AuditArguments audit;
+  MergeArguments merge;
   StabilityArguments stability;
   ModelArguments model;
   DoctorArguments doctor;
   ViewArguments view;
   const std::pair<CLI::App*, std::function<int()>> commands[] = {
       {AddPlan(app, &plan), [&] { return RunPlan(plan); }},
-      {AddAudit(app, &audit), [&] { return RunAudit(audit); }},
+      {AddAudit(app, &audit),
+       [&] { return audit.list.empty() ? RunAudit(audit) : RunAuditList(audit); }},
+      {AddMerge(app, &merge), [&] { return RunMerge(merge); }},
       {AddStability(app, &stability), [&] { return RunStability(stability); }},
       {AddView(app, &view), [&] { return RunView(view); }},
       {AddModel(app, &model), [&] { return RunModel(model); }},

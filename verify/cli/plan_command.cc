@@ -58,6 +58,7 @@ struct Plan {
 planner::ExtensionOptions MakeExtension(const PlanArguments& arguments) {
   planner::ExtensionOptions options;
   if (arguments.extension > 0) options.step = arguments.extension;
+  if (arguments.link == "flow") options.link = planner::Link::kFlow;
   options.space = arguments.space == "free" ? numeric::Space::kFree : numeric::Space::kGuide;
   return options;
 }

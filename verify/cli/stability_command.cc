@@ -322,7 +322,8 @@ void PrintJson(const Question& question, const Answer& answer) {
   json["support_region_gap_m"] = Number(answer.region.gap);
   for (const Eigen::Vector3d& p : answer.region.inner_W)
     json["support_region_m"].push_back(ToJson(p));
-  std::cout << json.dump(1) << '\n';
+  // A file name may be any bytes.
+  std::cout << json.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/io/foreign_path.h"
 #include "cguide/numeric/io/guide_io.h"
-#include "cguide/numeric/io/problem_reader.h"
 #include "cguide/verify/cli/console.h"
 
 namespace cguide::cli {
@@ -80,14 +79,14 @@ Path ReadPath(const CommonArguments& common, const std::string& path_file, PathF
 
 Subject ReadForeignPath(const CommonArguments& common, const std::string& path_file,
                         const std::string& problem_file, PathFormat format,
-                        const PathArguments& reading) {
+                        const PathArguments& reading, const ProblemReader& read_problem) {
   if (problem_file.empty()) {
     throw Error(Error::Code::kBadInput,
                 path_file + ": such a path names no problem; give one with --problem FILE");
   }
   Subject subject;
   subject.problem_file = problem_file;
-  subject.problem = numeric::io::ReadProblem(problem_file);
+  subject.problem = read_problem(problem_file);
   Warn(common, subject.problem.warnings);
   subject.path = ReadPath(common, path_file, format, subject.problem.model.robot, reading);
   return subject;
@@ -96,19 +95,20 @@ Subject ReadForeignPath(const CommonArguments& common, const std::string& path_f
 }  // namespace
 
 Subject ReadSubject(const CommonArguments& common, const std::string& path_file,
-                    const std::string& problem_file, const PathArguments& reading) {
+                    const std::string& problem_file, const PathArguments& reading,
+                    const ProblemReader& read_problem) {
   const std::filesystem::path file(path_file);
   const PathFormat format = FormatOf(path_file, reading);
   RefuseIdleOptions(path_file, format, reading);
   if (format != PathFormat::kGuide) {
-    return ReadForeignPath(common, path_file, problem_file, format, reading);
+    return ReadForeignPath(common, path_file, problem_file, format, reading, read_problem);
   }
   const numeric::io::Guide guide = numeric::io::ReadGuide(file);
   Subject subject;
   subject.problem_file = problem_file.empty()
                              ? (file.parent_path() / guide.problem_file).lexically_normal().string()
                              : problem_file;
-  subject.problem = numeric::io::ReadProblem(subject.problem_file);
+  subject.problem = read_problem(subject.problem_file);
   Warn(common, subject.problem.warnings);
   if (guide.model_digest != subject.problem.model_digest) {
     Say(common, "warning: " + path_file + " was planned for another model than " +
@@ -119,6 +119,12 @@ Subject ReadSubject(const CommonArguments& common, const std::string& path_file,
   subject.edges = guide.edges;
   subject.origin = "cguide " + guide.tool_version + ", seed " + std::to_string(guide.seed);
   return subject;
+}
+
+bool IsAbout(const check::Certificate& certificate, const Subject& subject) {
+  return certificate.model == subject.problem.model &&
+         certificate.path.waypoints == subject.path.waypoints &&
+         certificate.path.joint_names == subject.path.joint_names;
 }
 
 }  // namespace cguide::cli
