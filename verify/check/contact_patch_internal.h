@@ -171,7 +171,7 @@ bool ContactChecker<I>::KeepsBelow(int piece, const PatchPlane& plane, const Gua
     if (!IsSeenOutside(above, mesh, plane.n)) return false;
   }
   return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& t) {
-    return IsAway(guard, mesh, t, planes) || IsNonNegative(plane.top - HighestOf(mesh, t, plane.n));
+    return IsAway(guard, mesh, t, planes) || IsNonNegative(top - HighestOf(mesh, t, plane.n));
   });
 }
 

@@ -260,4 +260,47 @@ TEST_CASE("Whatever patch is accepted, the definition over Q has a contact withi
   CHECK(cracked > 100);
 }
 
+// Over a seam the foot is on either; what belongs to another object may be up to twice as far from
+// where it is to the first.
+TEST_CASE("On patches every width of a box of models is used up as far as it reaches") {
+  const auto holds = [](const Model& model, const Edge& edge, const ContactEvidence& evidence,
+                        double pose) {
+    const EdgeProof proof = ProofOf({evidence});
+    const bool fast = Checker(model, {0, {0, pose, 0}}).CheckEdge(edge, proof).empty();
+    REQUIRE(fast == Checker(model, {128, {0, pose, 0}}).CheckEdge(edge, proof).empty());
+    return fast;
+  };
+  const std::vector<PatchPart> seam{FacePart(0, 2, 0), FacePart(1, 2)};
+  const Edge across = Move({-0.01, 0.1, 0.01}, {0.01, 0.1, 0.01});
+  // Of one object both faces move together: up to the height.
+  Object both = TwoTiles(0, 0)[0];
+  both.pieces.push_back(TwoTiles(0, 0)[1].pieces[0]);
+  const Model one = OneSite({both});
+  CHECK(holds(one, across, PatchOn({0, 0, 1}, 0, kSlack, seam), 0));
+  CHECK(holds(one, across, PatchOn({0, 0, 1}, 0, kSlack, seam), 0.002));
+  CHECK(!holds(one, across, PatchOn({0, 0, 1}, 0, kSlack, seam), 0.0101));
+  // Two objects: the slack has to hold what one may rise above the other.
+  const Model two = OneSite(TwoTiles(0, 0));
+  CHECK(holds(two, across, PatchOn({0, 0, 1}, 0, kSlack, seam), 0));
+  CHECK(!holds(two, across, PatchOn({0, 0, 1}, 0, kSlack, seam), 0.0005));
+  CHECK(!holds(two, across, PatchOn({0, 0, 1}, 0, 0.00099, seam), 0.0005));
+  CHECK(holds(two, across, PatchOn({0, 0, 1}, 0, 0.00101, seam), 0.0005));
+  // A sheet beside it, and one that is part of the patch, likewise.
+  const Surface sheet{{{0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  const Model mixed = OneSite({TwoTiles(0, 0)[0], OneObject("sheet", sheet)});
+  const std::vector<PatchPart> onto{FacePart(0, 2, 0), TrianglePart(1, 1, {}, 1)};
+  CHECK(holds(mixed, across, PatchOn({0, 0, 1}, 0, kSlack, onto), 0));
+  CHECK(!holds(mixed, across, PatchOn({0, 0, 1}, 0, 0.00099, onto), 0.0005));
+  CHECK(holds(mixed, across, PatchOn({0, 0, 1}, 0, 0.00101, onto), 0.0005));
+  const Edge left = Move({-0.004, 0.1, 0.01}, {-0.003, 0.1, 0.01});
+  const std::vector<PatchPart> own{FacePart(0, 2)};
+  CHECK(!holds(mixed, left, PatchOn({0, 0, 1}, 0, 0.00099, own), 0.0005));
+  CHECK(holds(mixed, left, PatchOn({0, 0, 1}, 0, 0.00101, own), 0.0005));
+  // A halfspace below.
+  const Model floor = OneSite({TwoTiles(0, 0)[0], OneObject("floor", Halfspace{{0, 0, 1}, 0})});
+  const std::vector<PatchPart> over{FacePart(0, 2, 0), {1, -1, -1, {}, 1}};
+  CHECK(!holds(floor, across, PatchOn({0, 0, 1}, 0, 0.00099, over), 0.0005));
+  CHECK(holds(floor, across, PatchOn({0, 0, 1}, 0, 0.0021, over), 0.0005));  // as parabolas see it
+}
+
 }  // namespace cguide::check
