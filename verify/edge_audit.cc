@@ -38,7 +38,7 @@ Verdict VerdictOf(const EdgeFinding& edge) {
 // wide as it can be; on narrower leaves both are tight.
 EdgeFinding EdgeAuditor::Audit(int index, const Edge& edge) {
   EdgeFinding finding;
-  for (const double widest : {0x1p-1, 0x1p-3, 0x1p-5}) {
+  for (const double widest : {0x1p-1, 0x1p-3, 0x1p-5, 0x1p-7, 0x1p-9}) {
     finding = state_->Audit(index, edge, widest);
     if (finding.refusal.empty()) break;
   }
