@@ -1,7 +1,8 @@
 // Planners of OMPL on our space, samples and edge oracle, by OMPL's own Benchmark tool: its log
 // goes to a file that OMPL's scripts read, with the number of proved edges as a property of each
 // run.
-//   ompl_planners [--problem P] [--runs N] [--time S] [--log FILE] [--edges proved|STEP]
+//   ompl_planners [--problem P] [--runs N] [--time S] [--log FILE] [--edges proved|STEP] [--prm
+//   yes]
 #include <ompl/base/goals/GoalState.h>
 #include <ompl/geometric/SimpleSetup.h>
 #include <ompl/geometric/planners/prm/PRM.h>
@@ -30,6 +31,7 @@ struct Arguments {
   std::string problem = "fixtures/problems/chair_and_table.yaml";
   std::string log = "ompl_planners.log";
   std::string edges = "proved";
+  bool prm = false;
   int runs = 10;
   double time = 30;
 };
@@ -41,6 +43,7 @@ Arguments Parse(int argc, char** argv) {
   if (given.count("--problem")) a.problem = given["--problem"];
   if (given.count("--log")) a.log = given["--log"];
   if (given.count("--edges")) a.edges = given["--edges"];
+  a.prm = given.count("--prm") > 0;
   if (given.count("--runs")) a.runs = std::atoi(given["--runs"].c_str());
   if (given.count("--time")) a.time = std::atof(given["--time"].c_str());
   return a;
@@ -81,7 +84,7 @@ void Run(const char* name, const numeric::World& world, const numeric::Problem& 
   auto connect = std::make_shared<og::RRTConnect>(information);
   connect->setRange(0.25);
   benchmark.addPlanner(connect);
-  benchmark.addPlanner(std::make_shared<og::PRM>(information));
+  if (arguments.prm) benchmark.addPlanner(std::make_shared<og::PRM>(information));
   std::map<std::string, std::array<int, 3>> sums;  // solved, proved edges, edges
   benchmark.setPostRunEvent(
       [&](const ob::PlannerPtr& planner, ompl::tools::Benchmark::RunProperties& run) {
@@ -132,8 +135,10 @@ int main(int argc, char** argv) {
   std::printf("|---|---|---|---|---|---|\n");
   using ompl_adapter::Interpolation;
   using ompl_adapter::Samples;
-  Run("straight", world, problem, start.q, goal.q, arguments, Interpolation::kStraight,
-      Samples::kRaw);
-  Run("projected", world, problem, start.q, goal.q, arguments, Interpolation::kProjected,
-      Samples::kRaw);
+  const auto run = [&](const char* name, Interpolation interpolation, Samples samples) {
+    Run(name, world, problem, start.q, goal.q, arguments, interpolation, samples);
+  };
+  run("samples_as_drawn", Interpolation::kStraight, Samples::kRaw);
+  run("samples_projected", Interpolation::kStraight, Samples::kProjected);
+  run("extensions_projected", Interpolation::kProjected, Samples::kRaw);
 }
