@@ -33,7 +33,7 @@ struct PlanArguments {
   CommonArguments common;
   std::string problem;
   std::string output;
-  std::string planner = "contacts";  ///< contacts, rrt, prm
+  std::string planner = "rrt";  ///< rrt, prm, contacts
   std::string space = "guide";       ///< guide, free
   std::uint64_t seed = 1;
   double time_limit_s = 300;
