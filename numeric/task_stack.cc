@@ -6,6 +6,7 @@
 namespace cguide::numeric {
 namespace {
 
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Below this norm a row is dependent on those above it up to rounding (rows have norms of order 1).
@@ -14,10 +15,11 @@ constexpr double kDependent = 1e-9;
 // Removes the components along the basis, and once more where most of the row was cancelled: what
 // one pass leaves is of the order of rounding times the cancelled part, so twice is enough [Giraud,
 // Langou, Rozloznik 2005]. Returns the norm of what is left.
-double Orthogonalise(const std::vector<VectorXd>& basis, std::size_t size, VectorXd* row) {
+double Orthogonalise(const MatrixXd& basis, Eigen::Index size, VectorXd* parts, VectorXd* row) {
   double before = row->norm();
   for (int pass = 0; pass < 2; ++pass) {
-    for (std::size_t i = 0; i < size; ++i) *row -= basis[i].dot(*row) * basis[i];
+    parts->noalias() = basis.leftCols(size).transpose() * *row;
+    row->noalias() -= basis.leftCols(size) * *parts;
     const double after = row->norm();
     if (after > 0.5 * before) return after;
     before = after;
@@ -28,8 +30,9 @@ double Orthogonalise(const std::vector<VectorXd>& basis, std::size_t size, Vecto
 // Solves in the scaled variables x = v / weight; frozen columns stay 0.
 void SolveOnce(std::span<const Task> tasks, double damping, TaskStackWorkspace* ws,
                VectorXd* step) {
-  std::size_t used = 0;
+  Eigen::Index used = 0;
   const Eigen::Index n = step->size();
+  if (ws->basis.rows() != n) ws->basis.resize(n, n);
   step->setZero();
   for (const Task& task : tasks) {
     const double missing = task.rate - task.row.dot(*step);
@@ -37,12 +40,11 @@ void SolveOnce(std::span<const Task> tasks, double damping, TaskStackWorkspace* 
     for (Eigen::Index j = 0; j < n; ++j) {
       if (ws->frozen[j]) ws->row[j] = 0;
     }
-    const double norm = Orthogonalise(ws->basis, used, &ws->row);
-    if (norm < kDependent) continue;
+    const double norm = Orthogonalise(ws->basis, used, &ws->parts, &ws->row);
+    if (norm < kDependent || used == n) continue;
     const double gain = missing / (norm * norm + damping * damping);
     *step += gain * ws->row.cwiseProduct(ws->weight);
-    if (ws->basis.size() <= used) ws->basis.emplace_back();
-    ws->basis[used++] = ws->row / norm;
+    ws->basis.col(used++) = ws->row / norm;
   }
 }
 

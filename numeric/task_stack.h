@@ -29,7 +29,8 @@ struct TaskStackOptions {
 
 /** Scratch of SolveTaskStack. */
 struct TaskStackWorkspace {
-  std::vector<Eigen::VectorXd> basis;
+  Eigen::MatrixXd basis;  ///< orthonormal columns, the first few in use
+  Eigen::VectorXd parts;
   Eigen::VectorXd weight;
   Eigen::VectorXd row;
   std::vector<char> frozen;

@@ -2,25 +2,16 @@
 
 #include <algorithm>
 
+#include "cguide/planner/path_projection.h"
+
 namespace cguide::planner {
 namespace {
 
-bool EdgeHolds(const Configuration& from, const Configuration& to,
-               const ExtensionContext& context) {
-  ++context.counters->edges_tested;
-  const bool holds = context.oracle({from, to}) == Verdict::kHolds;
-  if (holds) ++context.counters->edges_accepted;
-  return holds;
-}
-
-// Interpolation is not defined between orientations half a turn apart; no edge joins them either.
 std::optional<Configuration> Steer(const Configuration& from, const Configuration& target,
                                    double step) {
   const double distance = Distance(from, target);
   if (distance <= step) return target;
-  const Quaternion &a = from.X_WB.q, &b = target.X_WB.q;
-  if (a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w == 0) return std::nullopt;
-  return Interpolate({from, target}, step / distance);
+  return Between(from, target, step / distance);
 }
 
 /** At most `max_nodes` chords of the flow from `from` towards `target`. */
@@ -37,6 +28,20 @@ Chain Flow(const Configuration& from, const Configuration& target, int max_nodes
 }
 
 }  // namespace
+
+std::optional<Configuration> Between(const Configuration& from, const Configuration& to, double s) {
+  const Quaternion &a = from.X_WB.q, &b = to.X_WB.q;
+  if (a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w == 0) return std::nullopt;
+  return Interpolate({from, to}, s);
+}
+
+bool EdgeHolds(const Configuration& from, const Configuration& to,
+               const ExtensionContext& context) {
+  ++context.counters->edges_tested;
+  const bool holds = context.oracle({from, to}) == Verdict::kHolds;
+  if (holds) ++context.counters->edges_accepted;
+  return holds;
+}
 
 void PlannerCounters::Add(const PlannerCounters& other) {
   samples += other.samples;
@@ -59,7 +64,9 @@ std::optional<Configuration> MoveIntoSpace(const Configuration& q,
     return q;
   }
   const ProjectionResult projected =
-      Project(context.world, q, context.options.projection, context.workspace);
+      context.options.repair
+          ? Repair(context.world, q, *context.options.repair, context.workspace)
+          : Project(context.world, q, context.options.projection, context.workspace);
   ++context.counters->projections;
   context.counters->newton_steps += projected.iterations;
   ++context.counters->projection_stops[static_cast<std::size_t>(projected.stop)];
@@ -108,6 +115,17 @@ Chain Connect(const Configuration& from, const Configuration& target,
     at = std::move(*next);
   }
   return chain;
+}
+
+std::vector<Configuration> Walk(const Configuration& from, const Configuration& target, int most,
+                                const ExtensionContext& context) {
+  std::vector<Configuration> nodes;
+  for (int i = 0; i < most; ++i) {
+    auto next = Extend(nodes.empty() ? from : nodes.back(), target, context);
+    if (!next) break;
+    nodes.push_back(std::move(*next));
+  }
+  return nodes;
 }
 
 double Length(const std::vector<Configuration>& nodes) {

@@ -7,6 +7,7 @@
 #include "cguide/exact/core/path.h"
 #include "cguide/planner/path_projection.h"
 #include "cguide/planner/projection.h"
+#include "cguide/planner/repair.h"
 
 namespace cguide::planner {
 
@@ -25,6 +26,7 @@ struct ExtensionOptions {
   int max_chain = 60;  ///< extensions of one connection
   numeric::Space space = numeric::Space::kGuide;
   ProjectionOptions projection;
+  std::optional<RepairOptions> repair;  ///< set: Repair projects, else Algorithm 3
 };
 
 /** What the pieces of a plan did, for tables and tuning. */
@@ -48,6 +50,13 @@ struct ExtensionContext {
   PlannerCounters* counters;
 };
 
+/** The configuration at s of the edge; nothing where none is defined, between orientations half a
+ turn apart. */
+std::optional<Configuration> Between(const Configuration& from, const Configuration& to, double s);
+
+/** Asks the oracle. */
+bool EdgeHolds(const Configuration& from, const Configuration& to, const ExtensionContext& context);
+
 /** q itself where the space needs no projection, else its projection; nothing where it fails. */
 std::optional<Configuration> MoveIntoSpace(const Configuration& q, const ExtensionContext& context);
 
@@ -65,6 +74,11 @@ struct Chain {
 };
 Chain Connect(const Configuration& from, const Configuration& target,
               const ExtensionContext& context);
+
+/** At most `most` extensions from `from` towards `target`, without `from`. Unlike Connect it does
+ not insist on the target. */
+std::vector<Configuration> Walk(const Configuration& from, const Configuration& target, int most,
+                                const ExtensionContext& context);
 
 /** Length of a polyline in the metric of path.h. */
 double Length(const std::vector<Configuration>& nodes);

@@ -4,6 +4,7 @@
 
 #include "cguide/exact/core/path.h"
 #include "cguide/numeric/membership.h"
+#include "cguide/numeric/near_pairs.h"
 #include "cguide/numeric/task_stack.h"
 #include "cguide/numeric/world.h"
 
@@ -36,7 +37,14 @@ struct ProjectionResult {
   int iterations = 0;  ///< Newton steps taken
 };
 
-/** Scratch of one thread. */
+/** lower <= row . v <= upper for a velocity v. */
+struct TaskBound {
+  Eigen::VectorXd row;
+  double lower = 0;
+  double upper = 0;
+};
+
+/** Scratch of one thread, for Project and Repair. */
 struct ProjectionWorkspace {
   explicit ProjectionWorkspace(const numeric::World& world) : guide(world) {}
   numeric::GuideWorkspace guide;
@@ -44,6 +52,10 @@ struct ProjectionWorkspace {
   std::vector<numeric::Approach> approaches;
   std::vector<numeric::Task> tasks;
   Eigen::MatrixXd com_jacobian;
+  std::vector<numeric::NearPair> pairs;
+  std::vector<TaskBound> bounds;
+  std::vector<char> active;
+  Eigen::VectorXd row;
 };
 
 /** Algorithm 3 [Bouyarmane 2009, II-C]: brings q near enough to the obstacles to be stable.

@@ -33,8 +33,8 @@ struct PlanArguments {
   CommonArguments common;
   std::string problem;
   std::string output;
-  std::string planner = "rrt";  ///< rrt, prm
-  std::string space = "guide";  ///< guide, free
+  std::string planner = "rrt";  ///< rrt, prm, contacts
+  std::string space = "guide";       ///< guide, free
   std::uint64_t seed = 1;
   double time_limit_s = 300;
   long iteration_limit = 10'000'000;

@@ -34,8 +34,9 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
   CLI::App* c = app.add_subcommand("plan", "Plan a guide for a problem");
   c->add_option("problem", a->problem, "Problem file (YAML)")->required();
   c->add_option("-o,--output", a->output, "Guide file to write (JSON)")->required();
-  c->add_option("--planner", a->planner, "rrt: two trees; prm: roadmap")
-      ->check(CLI::IsMember({"rrt", "prm"}))
+  c->add_option("--planner", a->planner,
+                "contacts: trees that lift and place limbs; rrt: two trees; prm: roadmap")
+      ->check(CLI::IsMember({"contacts", "rrt", "prm"}))
       ->capture_default_str();
   c->add_option("--space", a->space, "guide: near contact and balanced; free: collision-free only")
       ->check(CLI::IsMember({"guide", "free"}))

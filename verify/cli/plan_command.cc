@@ -8,6 +8,7 @@
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/numeric/sampled_edge.h"
 #include "cguide/planner/batch.h"
+#include "cguide/planner/contact_search.h"
 #include "cguide/planner/endpoint.h"
 #include "cguide/planner/prm.h"
 #include "cguide/planner/rrt.h"
@@ -36,6 +37,11 @@ bool DecidesWholeEdges(const PlanArguments& arguments, const Model& model) {
   return arguments.edges == "proved" && model.contact.model == ContactModel::kSites;
 }
 
+/** Contacts mean nothing in C_free: there the plain trees are left. */
+bool SearchesContacts(const PlanArguments& arguments) {
+  return arguments.planner == "contacts" && arguments.space == "guide";
+}
+
 EdgeOracle MakeOracle(const PlanArguments& arguments, const World& world, numeric::Space space) {
   if (DecidesWholeEdges(arguments, world.model())) {
     verify::WholeOracleOptions options;
@@ -57,6 +63,7 @@ struct Plan {
 
 planner::ExtensionOptions MakeExtension(const PlanArguments& arguments) {
   planner::ExtensionOptions options;
+  if (SearchesContacts(arguments)) options.repair.emplace();
   if (arguments.extension > 0) options.step = arguments.extension;
   if (arguments.link == "flow") options.link = planner::Link::kFlow;
   options.space = arguments.space == "free" ? numeric::Space::kFree : numeric::Space::kGuide;
@@ -88,6 +95,10 @@ PlanResult Search(const PlanArguments& arguments, const World& world, const Prob
     planner::Roadmap roadmap;
     return planner::PlanPrm(world, problem.sampling, plan.start.q, plan.goal.q, oracle, extension,
                             {}, run, &roadmap);
+  }
+  if (SearchesContacts(arguments)) {
+    return planner::PlanContacts(world, problem.sampling, plan.start.q, plan.goal.q, oracle,
+                                 extension, {}, run);
   }
   return planner::PlanRrt(world, problem.sampling, plan.start.q, plan.goal.q, oracle, extension,
                           run);

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "cguide/numeric/sampling.h"
+#include "cguide/planner/extension.h"
+#include "cguide/planner/forest.h"
+#include "cguide/planner/limb_step.h"
+
+namespace cguide::planner {
+
+/** The ways in which a tree grows. */
+enum class GrowthKind {
+  kSample,     ///< a step towards a random configuration as it is drawn
+  kMember,     ///< towards a random configuration that was brought into the space first
+  kTranslate,  ///< the root of a node moves towards a random place, the posture stays
+  kPosture,    ///< a random node takes the posture of a random configuration
+  kLimb,       ///< a random node moves one limb as in a random configuration
+  kLink,       ///< a random node is connected with a near one of another tree
+  kStep,       ///< limbs are lifted and placed, step by step, on the way to a random place
+  kSeed        ///< a random configuration in the space becomes a tree of its own
+};
+inline constexpr int kNumGrowthKinds = 8;
+
+struct ContactGrowthOptions {
+  /** Shares of the iterations, by GrowthKind. */
+  std::array<double, kNumGrowthKinds> shares{0.12, 0.08, 0.12, 0.08, 0.08, 0.08, 0.34, 0.1};
+  int max_seeds = 12;         ///< trees besides those of start and goal; no more are planted
+  double seed_growth = 0.25;  ///< share of the other growth that any tree gets, not these two
+  int max_walk = 20;          ///< extensions of a translation
+  int max_steps = 5;          ///< strides of the root on the way to a place
+  double stride = 0.35;       ///< how far the root moves at once where limbs are placed (m)
+  int links = 2;              ///< trees that a new node is connected with
+  double step_links = 0.3;    ///< share of those links for which limbs are placed
+  double link_reach = 0.5;    ///< for roots that are no farther apart (m)
+  LimbStepOptions step;
+};
+
+/** A chain from a node of one tree towards another node. */
+struct ForestLink {
+  int from = -1;
+  Chain chain;
+};
+
+/** What one iteration found, relative to the forest it started from. */
+struct ContactGrowth {
+  GrowthKind kind = GrowthKind::kSample;
+  int near = -1;                     ///< the node it starts from; -1: a tree of its own
+  std::vector<Configuration> nodes;  ///< after `near`, every edge accepted by the oracle
+  std::vector<ForestLink> links;     ///< to the last of `nodes`, to `near` where there are none
+  PlannerCounters counters;
+};
+
+/** One iteration. Nodes 0 and 1 of the forest are start and goal; its trees are given as
+ Forest::trees lists them. Depends on its arguments alone. */
+ContactGrowth GrowContacts(const Forest& forest, const std::vector<int>& trees,
+                           const numeric::SamplingRules& sampling, const std::vector<Limb>& limbs,
+                           const ContactGrowthOptions& options, ExtensionContext context,
+                           numeric::Rng& rng);
+
+}  // namespace cguide::planner

@@ -1,0 +1,80 @@
+#include "cguide/planner/forest.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+namespace cguide::planner {
+namespace {
+
+Configuration At(double x, double y = 0) {
+  Configuration q;
+  q.X_WB.p = {x, y, 0};
+  q.joints.resize(0);
+  return q;
+}
+
+TEST_CASE("trees merge when they are joined and paths run through the joints") {
+  Forest forest;
+  const int a = forest.Add(At(0), -1), b = forest.Add(At(10), -1);
+  const int a1 = forest.Add(At(1), a), a2 = forest.Add(At(2), a1), b1 = forest.Add(At(9), b);
+  CHECK(forest.tree(a) == forest.tree(a2));
+  CHECK(forest.tree(a) != forest.tree(b));
+  CHECK(forest.trees().size() == 2);
+  forest.Join(a1, b1);
+  CHECK(forest.trees().size() == 1);
+  CHECK(forest.members(forest.tree(a)).size() == 5);
+  CHECK(forest.Path(a, b) == std::vector<Configuration>{At(0), At(1), At(9), At(10)});
+  CHECK(forest.Path(b, a2) == std::vector<Configuration>{At(10), At(9), At(1), At(2)});
+  CHECK(forest.Path(a, a) == std::vector<Configuration>{At(0)});
+}
+
+TEST_CASE("joining nodes of one tree leaves one way between any two nodes") {
+  Forest forest;
+  const int a = forest.Add(At(0), -1), b = forest.Add(At(1), a), c = forest.Add(At(2), b);
+  forest.Join(a, c);
+  CHECK(forest.Path(a, c) == std::vector<Configuration>{At(0), At(1), At(2)});
+}
+
+TEST_CASE("random joins give the components of the graph") {
+  std::mt19937_64 rng(1);
+  Forest forest;
+  std::vector<int> label;
+  for (int i = 0; i < 60; ++i) {
+    forest.Add(At(i), -1);
+    label.push_back(i);
+  }
+  for (int k = 0; k < 50; ++k) {
+    const int a = static_cast<int>(rng() % 60), b = static_cast<int>(rng() % 60);
+    forest.Join(a, b);
+    const int gone = label[static_cast<std::size_t>(b)], kept = label[static_cast<std::size_t>(a)];
+    for (int& l : label) l = l == gone ? kept : l;
+    for (int i = 0; i < 60; ++i) {
+      for (int j = 0; j < i; ++j) {
+        REQUIRE((forest.tree(i) == forest.tree(j)) ==
+                (label[static_cast<std::size_t>(i)] == label[static_cast<std::size_t>(j)]));
+      }
+    }
+  }
+}
+
+TEST_CASE("the nearest node is sought in one tree, or in each of the others") {
+  Forest forest;
+  const int a = forest.Add(At(0), -1), a1 = forest.Add(At(5), a);
+  const int b = forest.Add(At(4), -1), c = forest.Add(At(20), -1);
+  CHECK(forest.Nearest(At(3.9), forest.tree(a)) == a1);
+  CHECK(forest.NearestPlace({1, 0, 0}, forest.tree(a)) == a);
+  CHECK(forest.NearestOfOthers(At(3.9), forest.tree(a), 5) == std::vector<int>{b, c});
+  CHECK(forest.NearestOfOthers(At(3.9), -1, 2) == std::vector<int>{b, a1});
+}
+
+TEST_CASE("nodes from which growth failed are taken for farther away") {
+  Forest forest;
+  const int a = forest.Add(At(0), -1), b = forest.Add(At(0.1), a);
+  CHECK(forest.Nearest(At(0.2), forest.tree(a)) == b);
+  for (int i = 0; i < 10; ++i) forest.Miss(b);
+  CHECK(forest.Nearest(At(0.2), forest.tree(a)) == a);
+  CHECK(forest.NearestPlace({0.2, 0, 0}, forest.tree(a)) == a);
+}
+
+}  // namespace
+}  // namespace cguide::planner
