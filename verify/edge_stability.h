@@ -47,9 +47,9 @@ class StabilityEdgeWorkspace {
  contacts and forces; a placement that is provably not stable refutes. Of the contacts those are
   used that provably stay over the leaf: on faces of halfspaces, boxes, meshes and hulls with one
  normal, on edges, corners and round sides of convex pieces and on patches of several parts with a
- bound on how it turns; other sites may serve on other leaves. The proof: constant admissible force directions u_j, weights
- lambda_j(t) >= 0, affine, arms r_j(t) about the moving centre of
- mass, each one Taylor model, and a matrix R with |I - R B(t)|_inf <= kappa < 1 and |R (v - A(t)
+ bound on how it turns; other sites may serve on other leaves. The proof: constant admissible force
+ directions u_j, weights lambda_j(t) >= 0, affine, arms r_j(t) about the moving centre of mass, each
+ one Taylor model, and a matrix R with |I - R B(t)|_inf <= kappa < 1 and |R (v - A(t)
  lambda(t))|_inf < (1
  - kappa) min lambda_B(t) for all t. Then the residual can be put on the basis by changing its
  weights by less than their least, and v is a positive combination of six independent wrenches:

@@ -34,7 +34,7 @@ struct PlanArguments {
   std::string problem;
   std::string output;
   std::string planner = "rrt";  ///< rrt, prm, contacts
-  std::string space = "guide";       ///< guide, free
+  std::string space = "guide";  ///< guide, free
   std::uint64_t seed = 1;
   double time_limit_s = 300;
   long iteration_limit = 10'000'000;
