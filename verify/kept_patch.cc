@@ -350,8 +350,8 @@ double ContactKeeper::RiseNear(const FootPath& path, const Plane& plane, double 
                                 numeric::HalfspaceError(piece, path.Scale()));
     } else if (piece.kind == PieceKind::kConvex) {
       const Convex& s = piece.convex;
-      rise = std::max(
-          rise, plane.n.dot(s.c) + numeric::CoreExtent(s, plane.n) + s.radius + s.error - plane.h);
+      rise = std::max(rise, plane.n.dot(s.c) + numeric::CoreExtent(s, plane.n) + s.radius +
+                                s.error - plane.h + moved);
     } else {
       rise = std::max(rise, RiseOfMesh(path, plane, reach, p, kept) + moved);
     }

@@ -162,6 +162,14 @@ TEST_CASE("Two objects side by side may be moved against each other") {
   CHECK(IsProved(tiles, Slide(-0.02, 0.02), {0, 0.001, 0}));
   CHECK(IsProved(tiles, Slide(-0.06, 0.07), {}));
   CHECK_FALSE(IsProved(tiles, Slide(-0.098, 0.098), {0, 0.001, 0}));
+  // Nor does the certifier by itself hold what it is not: here sites cross the seam.
+  const World world(SlidingFoot({test::BoxObject("left", {-1, -1, -0.1}, {0.05, 1, 0}),
+                                 test::BoxObject("right", {0.05, -1, -0.1}, {1, 1, 0})}));
+  CHECK(EdgeAuditor(world).Audit(0, Slide(-0.07, 0.05)).proof);
+  for (const double pose : {1e-7, 1e-6, 1e-5, 1e-4}) {
+    CAPTURE(pose);
+    CHECK(EdgeAuditor(world, {0, pose, 0}).Audit(0, Slide(-0.07, 0.05)).refusal == "");
+  }
 }
 
 TEST_CASE("A certificate names its box and is checked for it") {
