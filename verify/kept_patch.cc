@@ -1,4 +1,3 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -17,99 +16,8 @@ using numeric::PieceKind;
 using patch_internal::Bounds;
 using patch_internal::FootPath;
 using patch_internal::Part;
+using patch_internal::PartList;
 using patch_internal::Plane;
-
-namespace patch_internal {
-
-double FootPath::Scale() const {
-  return lower.cwiseAbs().cwiseMax(upper.cwiseAbs()).sum() + std::abs(height);
-}
-
-Part MakePart(const check::PatchPart& name, const std::vector<Vector3d>& v, bool is_face,
-              double error, const Plane& plane) {
-  Part part;
-  part.name = name;
-  part.is_face = is_face;
-  part.v = v;
-  part.error = error;
-  part.depth = plane.h - plane.n.dot(v[0]);
-  const int count = static_cast<int>(v.size());
-  for (int k = 1; k < count; ++k) {
-    part.side[k - 1] = v[k] - v[0];
-    part.longest = std::max(part.longest, part.side[k - 1].norm());
-    part.depth = std::max(part.depth, plane.h - plane.n.dot(v[k]));
-  }
-  if (count == 2) part.rows.row(0) = part.side[0].transpose() / part.side[0].squaredNorm();
-  if (count < 3) return part;
-  Eigen::Matrix<double, 3, 2> sides;
-  sides << part.side[0], part.side[1];
-  part.rows = (sides.transpose() * sides).inverse() * sides.transpose();
-  const Vector3d last = is_face ? Vector3d(v[1] + part.side[1]) : v[2];
-  part.longest = std::max(part.longest, (v[2] - v[1]).norm());
-  part.depth = std::max(part.depth, plane.h - plane.n.dot(last));
-  return part;
-}
-
-double GapAt(const Part& part, const Vector3d& foot) {
-  if (part.v.empty()) return std::max(0.0, part.normal.dot(foot) - part.offset);
-  Vector3d rest = foot - part.v[0];
-  double outside = 0, sum = 0;
-  for (int k = 1; k < static_cast<int>(part.v.size()); ++k) {
-    const double l = part.rows.row(k - 1).dot(rest), below = std::max(0.0, -l);
-    outside += part.is_face ? std::max(below, l - 1) * part.side[k - 1].norm() : below;
-    sum += l;
-    rest -= l * part.side[k - 1];
-  }
-  if (!part.is_face) outside = (outside + std::max(0.0, sum - 1)) * part.longest;
-  return rest.norm() + outside;
-}
-
-/** f(t) for t in [from, to], as a function of t' in [-1, 1]. The ends are within 2 u, the sums
- within 8 u of the coefficients' sizes. */
-Model2 Restricted(const Model2& a, double from, double to) {
-  const double m = 0.5 * (from + to), k = 0.5 * (to - from);
-  Model2 result;
-  result.c[0] = a.c[0] + m * (a.c[1] + m * a.c[2]);
-  result.c[1] = k * (a.c[1] + 2 * m * a.c[2]);
-  result.c[2] = k * k * a.c[2];
-  result.r = (a.r + 32 * kUnit * Magnitude(a)) * kUp;
-  return result;
-}
-
-double Largest(const Model2& a) { return std::max(-LowerBound(a), UpperBound(a)); }
-
-// As in contact_patch_internal.h of the checker, which proves it.
-double GapOver(const Part& part, const FootPath& path, double from, double to) {
-  constexpr double kSlop = 64 * kUnit;
-  if (part.v.empty()) {
-    const Model2 over = Dot<kDegree>(part.normal, path.foot) - Constant<kDegree>(part.offset);
-    return std::max(0.0, UpperBound(Restricted(over, from, to)) + part.error);
-  }
-  Model2 rest[3];
-  for (int i = 0; i < 3; ++i) {
-    rest[i] =
-        Restricted(Coordinate<kDegree>(path.foot, i) - Constant<kDegree>(part.v[0][i]), from, to);
-  }
-  double outside = 0, size = part.error;
-  Model2 sum = Constant<kDegree>(0);
-  for (int k = 1; k < static_cast<int>(part.v.size()); ++k) {
-    const Vector3d& side = part.side[k - 1];
-    Model2 l = Constant<kDegree>(0);
-    for (int i = 0; i < 3; ++i) l = l + part.rows(k - 1, i) * rest[i];
-    const double below = std::max(0.0, -LowerBound(l));
-    outside += part.is_face ? std::max(below, UpperBound(l) - 1) * side.norm() : below;
-    sum = sum + l;
-    for (int i = 0; i < 3; ++i) rest[i] = rest[i] - side[i] * l;
-    size += 4 * Largest(l) * (part.error + kSlop * side.norm());  // of sides, at corners' errors
-  }
-  if (!part.is_face) {
-    outside = (outside + std::max(0.0, UpperBound(sum) - 1)) * (part.longest + 4 * part.error);
-  }
-  const Vector3d off(Largest(rest[0]), Largest(rest[1]), Largest(rest[2]));
-  return (off.norm() + outside + size) * (1 + kSlop) + kSlop * path.Scale();
-}
-
-}  // namespace patch_internal
 
 namespace {
 
@@ -120,124 +28,10 @@ double RoundedUp(double x) {
   return std::max(x, std::ceil(x / scale * (1 + 1e-12)) * scale);
 }
 
-/** Parts of the obstacles near a foot that may serve: those that are hardly below the plane. */
-class PartList {
- public:
-  static constexpr std::size_t kMost = 600;
-
-  PartList(const Plane& plane, double deepest) : plane_(plane), deepest_(deepest) {}
-
-  void Add(const check::PatchPart& name, const std::vector<Vector3d>& v, bool is_face,
-           double error) {
-    const Part part = MakePart(name, v, is_face, error, plane_);
-    if (part.depth <= deepest_) parts.push_back(part);
-  }
-
-  /** The triangle, its edges and its corners; `numbers`: of the corners in certificates. */
-  void AddTriangle(check::PatchPart name, const std::array<Vector3d, 3>& v,
-                   const std::array<int, 3>& numbers, bool is_mesh, double error) {
-    name.corners = is_mesh ? std::vector<int>{} : std::vector{numbers[0], numbers[1], numbers[2]};
-    Add(name, {v[0], v[1], v[2]}, false, error);
-    for (int k = 0; k < 3; ++k) {
-      const int l = (k + 1) % 3;
-      name.corners = {numbers[k], numbers[l]};
-      Add(name, {v[k], v[l]}, false, error);
-      name.corners = {numbers[k]};
-      Add(name, {v[k]}, false, error);
-    }
-  }
-
-  void AddBox(int piece, const Convex& s);
-
-  std::vector<Part> parts;
-
- private:
-  const Plane& plane_;
-  double deepest_;
-};
-
-void PartList::AddBox(int piece, const Convex& s) {
-  std::vector<Vector3d> v;
-  for (int i = 0; i < 8; ++i) {
-    v.push_back(s.c + s.R * Vector3d(i & 1 ? s.half[0] : -s.half[0], i & 2 ? s.half[1] : -s.half[1],
-                                     i & 4 ? s.half[2] : -s.half[2]));
-  }
-  for (int face = 0; face < 6; ++face) {
-    const int axis = face % 3, begin = face < 3 ? 1 << axis : 0;
-    const int a = begin | 1 << (axis + 1) % 3, b = begin | 1 << (axis + 2) % 3;
-    Add({piece, face, -1, {}, 1}, {v[begin], v[a], v[b]}, true, s.error);
-  }
-  for (int i = 0; i < 8; ++i) {
-    Add({piece, -1, -1, {i}, 1}, {v[i]}, false, s.error);
-    for (const int bit : {1, 2, 4}) {
-      if (i & bit) continue;
-      Add({piece, -1, -1, {i, i | bit}, 1}, {v[i], v[i | bit]}, false, s.error);
-    }
-  }
-}
-
 bool IsBox(const ObstaclePiece& piece) {
   return piece.kind == PieceKind::kConvex && piece.convex.radius == 0 &&
          piece.convex.kind == numeric::CoreKind::kBox && piece.convex.half.minCoeff() > 0;
 }
-
-Vector3d At(const Vector2& a, double t) {
-  return (a.c[0] + t * (a.c[1] + t * a.c[2])).head<3>().matrix();
-}
-
-/** Chooses which part serves for which t: proposals, BoundParts proves. */
-class Cover {
- public:
-  static constexpr std::size_t kMost = 16;
-
-  Cover(const std::vector<Part>& parts, const FootPath& path) : parts_(parts), path_(path) {}
-
-  /** Indices into the parts with the t until which they serve; empty where there are too many. */
-  std::vector<std::pair<int, double>> Find() {
-    constexpr int kHalvings = 32;
-    if (!parts_.empty() && !Extend(-1, 1, kHalvings)) chosen_.clear();
-    return chosen_;
-  }
-
- private:
-  double Cost(const Part& part, double t) const {
-    const double gap = GapAt(part, At(path_.foot, t));
-    return gap * gap + 2 * path_.height * std::max(0.0, part.depth);
-  }
-
-  bool Extend(double from, double to, int halvings) {
-    constexpr double kEnough = 1e-17;  // (3e-9 m)^2
-    const double t[] = {from, 0.5 * (from + to), to};
-    double best[3], cost[3];
-    std::fill(std::begin(best), std::end(best), INFINITY);
-    for (const Part& part : parts_) {
-      for (int k = 0; k < 3; ++k) best[k] = std::min(best[k], Cost(part, t[k]));
-    }
-    int chosen = -1;
-    double least = INFINITY;
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-      double worst = 0;
-      for (int k = 0; k < 3; ++k) {
-        cost[k] = Cost(parts_[i], t[k]);
-        worst = std::max(worst, cost[k] / std::max(kEnough, best[k]));
-      }
-      if (!(worst < least)) continue;
-      least = worst;
-      chosen = static_cast<int>(i);
-    }
-    if (chosen < 0) return false;
-    if (least > 1.5 && halvings > 0) {
-      return Extend(from, t[1], halvings - 1) && Extend(t[1], to, halvings - 1);
-    }
-    if (!chosen_.empty() && chosen_.back().first == chosen) chosen_.pop_back();
-    chosen_.emplace_back(chosen, to);
-    return chosen_.size() <= kMost;
-  }
-
-  const std::vector<Part>& parts_;
-  const FootPath& path_;
-  std::vector<std::pair<int, double>> chosen_;
-};
 
 }  // namespace
 
@@ -398,7 +192,8 @@ bool ContactKeeper::TriangleAway(const Mesh& mesh, int triangle, const Vector2& 
     }
     if (found->planes.size() == kMost) return false;
   }
-  const auto there = numeric::ProjectPoint(v[0], v[1], v[2], mesh.error, At(foot, 0));
+  const auto there =
+      numeric::ProjectPoint(v[0], v[1], v[2], mesh.error, patch_internal::At(foot, 0));
   Vector3d n = there.n;
   for (double& x : n) x = std::round(x * 1e4) / 1e4;
   if (!parts(n)) n = there.n;
@@ -455,7 +250,7 @@ bool ContactKeeper::KeepOnPlane(const MovingSite& site, const numeric::Contact& 
   double rise = RiseNear(path, plane, rules.seam + 3 * pose_, kept);
   if (!(rise < most)) return false;
   const std::vector<Part> parts = PatchParts(path, plane);
-  const auto chosen = Cover(parts, path).Find();
+  const auto chosen = ChooseParts(parts, path);
   if (chosen.empty()) return false;
   Bounds bounds;
   bool settled = false;

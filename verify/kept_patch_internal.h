@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "cguide/verify/kept_contact_internal.h"
@@ -45,6 +47,50 @@ Part MakePart(const check::PatchPart& name, const std::vector<Eigen::Vector3d>& 
 /** How far the foot is from the part, at most (an estimate at a point, a bound over [from, to]). */
 double GapAt(const Part& part, const Eigen::Vector3d& foot);
 double GapOver(const Part& part, const FootPath& path, double from, double to);
+
+/** The foot, or another moving point, at t. */
+Eigen::Vector3d At(const Vector2& a, double t);
+
+/** Parts of the obstacles near a foot that may serve: those that are hardly below the plane. */
+class PartList {
+ public:
+  static constexpr std::size_t kMost = 600;
+
+  PartList(const Plane& plane, double deepest) : plane_(plane), deepest_(deepest) {}
+
+  void Add(const check::PatchPart& name, const std::vector<Eigen::Vector3d>& v, bool is_face,
+           double error) {
+    const Part part = MakePart(name, v, is_face, error, plane_);
+    if (part.depth <= deepest_) parts.push_back(part);
+  }
+
+  /** The triangle, its edges and its corners; `numbers`: of the corners in certificates. */
+  void AddTriangle(check::PatchPart name, const std::array<Eigen::Vector3d, 3>& v,
+                   const std::array<int, 3>& numbers, bool is_mesh, double error) {
+    name.corners = is_mesh ? std::vector<int>{} : std::vector{numbers[0], numbers[1], numbers[2]};
+    Add(name, {v[0], v[1], v[2]}, false, error);
+    for (int k = 0; k < 3; ++k) {
+      const int l = (k + 1) % 3;
+      name.corners = {numbers[k], numbers[l]};
+      Add(name, {v[k], v[l]}, false, error);
+      name.corners = {numbers[k]};
+      Add(name, {v[k]}, false, error);
+    }
+  }
+
+  void AddBox(int piece, const numeric::Convex& s);
+
+  std::vector<Part> parts;
+
+ private:
+  const Plane& plane_;
+  double deepest_;
+};
+
+/** Chooses which part serves for which t: indices into the parts with the t until which they serve;
+ empty where there are too many. Proposals, ContactKeeper::BoundParts proves. */
+std::vector<std::pair<int, double>> ChooseParts(const std::vector<Part>& parts,
+                                                const FootPath& path);
 
 /** Over a leaf the contact's point is within `spread` of the foot and within `farthest` of x. */
 struct Bounds {
