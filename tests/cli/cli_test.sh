@@ -5,27 +5,7 @@ set -uo pipefail
 program=$1
 fixtures=$2
 section=$3
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
-
-fail() {
-  echo "FAILED: $*" >&2
-  failures=$((failures + 1))
-}
-
-# expect CODE ARGUMENTS...: runs the program; its stdout and stderr are kept in $work/out and $work/err.
-expect() {
-  local wanted=$1 code=0
-  shift
-  "$program" "$@" >"$work/out" 2>"$work/err" || code=$?
-  [ "$code" = "$wanted" ] || {
-    fail "exit code $code instead of $wanted: cguide $*"
-    sed 's/^/    /' "$work/err" | head -5 >&2
-  }
-}
-
-says() { grep -qF -- "$1" "$work/out" "$work/err" || fail "nothing said of \"$1\""; }
+source "$(dirname "${BASH_SOURCE[0]}")/expect.sh"
 says_not() { ! grep -qiF -- "$1" "$work/out" "$work/err" || fail "said \"$1\""; }
 
 a1=$fixtures/problems/chair_and_table.yaml

@@ -5,27 +5,7 @@ set -uo pipefail
 program=$1
 checker=$2
 fixtures=$3
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failures=0
-
-fail() {
-  echo "FAILED: $*" >&2
-  failures=$((failures + 1))
-}
-
-# expect CODE ARGUMENTS...: runs the program; its stdout and stderr are kept in $work/out and $work/err.
-expect() {
-  local wanted=$1 code=0
-  shift
-  "$program" "$@" >"$work/out" 2>"$work/err" || code=$?
-  [ "$code" = "$wanted" ] || {
-    fail "exit code $code instead of $wanted: cguide $*"
-    sed 's/^/    /' "$work/out" "$work/err" | head -8 >&2
-  }
-}
-
-says() { grep -qF -- "$1" "$work/out" "$work/err" || fail "nothing said of \"$1\""; }
+source "$(dirname "${BASH_SOURCE[0]}")/expect.sh"
 
 # same A B: two folders hold the same files with the same bytes, but for the manifests.
 same() { diff -r -x 'shard-*' "$1" "$2" >"$work/diff" || fail "$1 and $2 differ: $(head -3 "$work/diff")"; }

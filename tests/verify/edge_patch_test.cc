@@ -2,13 +2,14 @@
 #include <random>
 
 #include "cguide/verify/edge_audit.h"
-#include "tests/numeric/geometry_models.h"
+#include "tests/verify/sliding_foot.h"
 
 // How obstacles are split into objects, tiles and triangles changes no answer (DESIGN part 2).
 namespace cguide::verify {
 namespace {
 
 using Eigen::Vector3d;
+using test::SlidingFoot;
 using Rng = std::mt19937_64;
 using numeric::World;
 using test::Between;
@@ -62,27 +63,6 @@ std::vector<Object> Floor(Cut cut, int n) {
   return objects;
 }
 
-/** A heavy base at x = y = 0 and a foot below it that slides along x and turns, sites at the
- corners of its sole 5 mm above the floor. */
-Model SlidingFoot() {
-  Model model;
-  model.robot.links.resize(2);
-  model.robot.links[0] = {.name = "base", .mass = 50};
-  model.robot.links[1] = {.name = "foot", .joint = 0, .mass = 0};
-  model.robot.links[1].shapes.push_back({{}, Box{{0.2, 0.1, 0.04}}});
-  Joint joint{.name = "slide", .type = JointType::kPrismatic, .parent = 0, .child = 1};
-  joint.X_PJ.p = {0, 0, -0.8};
-  joint.lower = -1;
-  joint.upper = 1;
-  model.robot.joints.push_back(joint);
-  AssignBodiesAndColumns(&model.robot);
-  for (const double x : {0.1, -0.1}) {
-    for (const double y : {0.05, -0.05}) model.sites.push_back({1, {x, y, -0.02}, 0});
-  }
-  model.contact.bodies = {1};
-  return model;
-}
-
 Edge Slide(const Vector3d& p, double from, double to, double turn = 0) {
   Edge edge{test::At(p), test::At(Pose{p, {0, 0, std::sin(turn / 2), std::cos(turn / 2)}})};
   edge.from.joints = Eigen::VectorXd::Constant(1, from);
@@ -128,7 +108,7 @@ std::vector<Object> Stairs(bool is_mesh) {
 
 TEST_CASE("A floor in 1, 2 x 2 or 3 x 3 pieces of any kind carries as the halfspace does") {
   Rng rng(31);
-  Model model = SlidingFoot();
+  Model model = SlidingFoot(std::vector<Object>{});
   std::vector<Edge> edges;
   for (int i = 0; i < 6; ++i) {
     const Vector3d p(Between(rng, -0.05, 0.05) - (i % 2 ? 0.67 : 0), Between(rng, -0.1, 0.1),
@@ -161,7 +141,7 @@ TEST_CASE("A floor in 1, 2 x 2 or 3 x 3 pieces of any kind carries as the halfsp
 
 TEST_CASE("Stairs carry alike as boxes and as a mesh, over treads and across their noses") {
   Rng rng(32);
-  const Model foot = SlidingFoot();
+  const Model foot = SlidingFoot(std::vector<Object>{});
   int kept = 0, lost = 0, open = 0;
   for (int i = 0; i < 40; ++i) {
     const int step = static_cast<int>(rng() % 3);
