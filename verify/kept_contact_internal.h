@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -106,7 +107,7 @@ class ContactKeeper {
 
   /** P: a plane that nothing near the foot is above, but for a rise of rounding or a little more,
    with some of the obstacles near the foot for every t. The closest of them is a contact's point,
-   whose normal is nearly the plane's: lemma 10 of FORMAT.md. */
+   whose normal is nearly the plane's: lemma 11 of FORMAT.md. */
   bool KeepOnPatch(const MovingSite& site, const numeric::Contact& contact, KeptContact* kept);
   bool KeepOnPlane(const MovingSite& site, const numeric::Contact& contact,
                    const Eigen::Vector3d& n, KeptContact* kept);
@@ -116,6 +117,13 @@ class ContactKeeper {
   patch_internal::Bounds BoundParts(const std::vector<patch_internal::Part>& parts,
                                     const std::vector<std::pair<int, double>>& chosen,
                                     const patch_internal::FootPath& path, double rise) const;
+  std::optional<patch_internal::FootPath> FollowFoot(const MovingSite& site,
+                                                     const patch_internal::Plane& plane,
+                                                     int owner) const;
+  std::optional<patch_internal::Bounds> SettleBounds(
+      const std::vector<patch_internal::Part>& parts,
+      const std::vector<std::pair<int, double>>& chosen, const patch_internal::FootPath& path,
+      const patch_internal::Plane& plane, KeptContact* kept) const;
   double RiseNear(const patch_internal::FootPath& path, const patch_internal::Plane& plane,
                   double reach, KeptContact* kept) const;
   double RiseOfMesh(const patch_internal::FootPath& path, const patch_internal::Plane& plane,

@@ -33,6 +33,9 @@ bool IsBox(const ObstaclePiece& piece) {
          piece.convex.kind == numeric::CoreKind::kBox && piece.convex.half.minCoeff() > 0;
 }
 
+// What rises beside the foot by more than this would spread the normal too far.
+double MostRise(const FootPath& path) { return 0.1 * path.height; }
+
 }  // namespace
 
 // Directions for the plane: normals of what is about the contact's point, the nearest to the
@@ -224,61 +227,73 @@ Bounds ContactKeeper::BoundParts(const std::vector<Part>& parts,
   return bounds;
 }
 
-bool ContactKeeper::KeepOnPlane(const MovingSite& site, const numeric::Contact& contact,
-                                const Vector3d& n, KeptContact* kept) {
-  const ContactRules& rules = world_.model().contact;
-  const Plane plane{n, n.dot(contact.y_W)};
+std::optional<FootPath> ContactKeeper::FollowFoot(const MovingSite& site, const Plane& plane,
+                                                  int owner) const {
   FootPath path;
-  path.owner = contact.object;
+  path.owner = owner;
   Vector2 x = site.x;  // as the owner sees it, which may be moved
   x.r.head<3>() += pose_ * kUp;
   Model2 d = Dot<kDegree>(plane.n, x) - Constant<kDegree>(plane.h);
-  const double slop =
-      64 * kUnit *
-      (site.lower.cwiseAbs().cwiseMax(site.upper.cwiseAbs()).sum() + std::abs(plane.h));
-  d.r += slop;
+  path.slop = 64 * kUnit *
+              (site.lower.cwiseAbs().cwiseMax(site.upper.cwiseAbs()).sum() + std::abs(plane.h));
+  d.r += path.slop;
   path.foot = x - d * Constant<kDegree>(plane.n);
   path.lower = LowerOf(path.foot);
   path.upper = UpperOf(path.foot);
   path.height = UpperBound(d);
-  const double lowest = LowerBound(d);
-  if (!(lowest > 0 && lowest > site.radius - site.skin)) return false;
-  if (!(path.height < site.radius + rules.epsilon)) return false;
-  kept->evidence = {contact.site, -1, {}, {}, {}, {}, check::PatchEvidence{}};
-  // What rises beside the foot by more than this would spread the normal too far.
-  const double most = 0.1 * path.height;
-  double rise = RiseNear(path, plane, rules.seam + 3 * pose_, kept);
-  if (!(rise < most)) return false;
-  const std::vector<Part> parts = PatchParts(path, plane);
-  const auto chosen = ChooseParts(parts, path);
-  if (chosen.empty()) return false;
+  path.lowest = LowerBound(d);
+  if (!(path.lowest > 0 && path.lowest > site.radius - site.skin)) return std::nullopt;
+  if (!(path.height < site.radius + world_.model().contact.epsilon)) return std::nullopt;
+  return path;
+}
+
+// How far the point may be from the foot depends on what rises nearby, and what counts as nearby on
+// how far the point may be.
+std::optional<Bounds> ContactKeeper::SettleBounds(const std::vector<Part>& parts,
+                                                  const std::vector<std::pair<int, double>>& chosen,
+                                                  const FootPath& path, const Plane& plane,
+                                                  KeptContact* kept) const {
+  const double seam = world_.model().contact.seam;
   Bounds bounds;
-  bool settled = false;
-  double reach = 0;
-  for (int round = 0; round < 4 && !settled; ++round) {
-    reach = rules.seam + 1.1 * bounds.spread + 3 * pose_;
-    rise = RoundedUp(RiseNear(path, plane, reach, kept) + 4 * slop);
-    if (!(rise < most)) return false;
+  for (int round = 0; round < 4; ++round) {
+    const double reach = seam + 1.1 * bounds.spread + 3 * pose_;
+    const double rise = RoundedUp(RiseNear(path, plane, reach, kept) + 4 * path.slop);
+    if (!(rise < MostRise(path))) return std::nullopt;
     bounds = BoundParts(parts, chosen, path, rise);
-    settled = bounds.spread + rules.seam + 3 * pose_ <= reach;
+    bounds.rise = rise;
+    bounds.reach = reach;
+    if (bounds.spread + seam + 3 * pose_ <= reach) return bounds;
   }
-  const double nearest = lowest - rise;
-  if (!settled || !(nearest > 0 && nearest > site.radius - LeastSkin(site, path, reach))) {
-    return false;
-  }
-  if (!(bounds.farthest < site.radius + rules.epsilon)) return false;
+  return std::nullopt;
+}
+
+bool ContactKeeper::KeepOnPlane(const MovingSite& site, const numeric::Contact& contact,
+                                const Vector3d& n, KeptContact* kept) {
+  const ContactRules& rules = world_.model().contact;
+  const Plane plane{n, n.dot(contact.y_W)};
+  const auto path = FollowFoot(site, plane, contact.object);
+  if (!path) return false;
+  kept->evidence = {contact.site, -1, {}, {}, {}, {}, check::PatchEvidence{}};
+  if (!(RiseNear(*path, plane, rules.seam + 3 * pose_, kept) < MostRise(*path))) return false;
+  const std::vector<Part> parts = PatchParts(*path, plane);
+  const auto chosen = ChooseParts(parts, *path);
+  if (chosen.empty()) return false;
+  const auto bounds = SettleBounds(parts, chosen, *path, plane, kept);
+  if (!bounds || !(bounds->farthest < site.radius + rules.epsilon)) return false;
+  const double nearest = path->lowest - bounds->rise;
+  if (!(nearest > 0 && nearest > site.radius - LeastSkin(site, *path, bounds->reach))) return false;
   check::PatchEvidence& patch = *kept->evidence.patch;
-  patch = {plane.n, plane.h, rise, {}};
+  patch = {plane.n, plane.h, bounds->rise, {}};
   for (const auto& [index, until] : chosen) {
     patch.parts.push_back(parts[index].name);
     patch.parts.back().until = until;
   }
   const int first = patch.parts[0].piece;
   const Geometry& g = world_.geometry();
-  const bool is_own = g.pieces[first].object == path.owner;
-  kept->evidence.piece = is_own ? first : g.object_begin[path.owner];
+  const bool is_own = g.pieces[first].object == path->owner;
+  kept->evidence.piece = is_own ? first : g.object_begin[path->owner];
   kept->n_W = plane.n;
-  kept->normal_error = bounds.spread / nearest * kUp + 64 * kUnit;
+  kept->normal_error = bounds->spread / nearest * kUp + 64 * kUnit;
   SetForcePoint(site, kept);
   return true;
 }

@@ -19,6 +19,8 @@ struct FootPath {
   Vector2 foot;
   Eigen::Vector3d lower, upper;  ///< box of it
   double height = 0;             ///< of the site above the plane, at most
+  double lowest = 0;             ///< and at least
+  double slop = 0;               ///< rounding of these heights
   int owner = -1;                ///< object from which all this is seen
 
   /** A size of numbers, for their rounding. */
@@ -96,6 +98,8 @@ std::vector<std::pair<int, double>> ChooseParts(const std::vector<Part>& parts,
 struct Bounds {
   double spread = 0;
   double farthest = 0;
+  double rise = 0;   ///< of obstacles near the foot above the plane, at most
+  double reach = 0;  ///< what counts as near
 };
 
 }  // namespace cguide::verify::patch_internal

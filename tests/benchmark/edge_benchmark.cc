@@ -21,14 +21,9 @@
 namespace {
 
 using namespace cguide;  // NOLINT: a program of one file
+using benchmark_tools::Mean;
 using benchmark_tools::MicrosecondsOf;
 using benchmark_tools::Quantile;
-
-double Mean(const std::vector<double>& x) {
-  double sum = 0;
-  for (const double v : x) sum += v;
-  return sum / static_cast<double>(x.size());
-}
 
 std::vector<Edge> GuideEdges(const numeric::Problem& problem, const numeric::World& world,
                              int seeds) {

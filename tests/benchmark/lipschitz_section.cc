@@ -10,20 +10,17 @@
 #include "cguide/verify/edge_stability.h"
 #include "tests/benchmark/lipschitz_edge.h"
 #include "tests/benchmark/timing.h"
+#include "tests/verify/pendulum.h"
 
 namespace cguide::benchmark {
 namespace {
 
 using benchmark_tools::GeometricMean;
+using benchmark_tools::Mean;
 using benchmark_tools::Median;
 using benchmark_tools::MicrosecondsOf;
 using benchmark_tools::Quantile;
-
-double Mean(const std::vector<double>& x) {
-  double sum = 0;
-  for (const double v : x) sum += v;
-  return sum / static_cast<double>(x.size());
-}
+using test::Pendulum;
 
 /** The certifier's answer to what LipschitzTester is asked: the model asks for contact alone. */
 class Certifier {
@@ -120,23 +117,6 @@ int ReportEdges(const char* name, const numeric::World& world, const std::vector
     if (t.contradicted > 0) std::printf("(%d contradictions)\n", t.contradicted);
   }
   return contradicted;
-}
-
-/** A box on a swinging arm whose lowest corner passes `clearance` above the floor. */
-Model Pendulum(double clearance) {
-  Model model;
-  model.robot.links.resize(2);
-  model.robot.links[0] = {.name = "base", .mass = 1};
-  model.robot.links[1] = {.name = "arm", .joint = 0, .mass = 1};
-  model.robot.links[1].shapes.push_back({{{0, 0, -0.5}, {}}, Box{{0.1, 0.1, 1}}});
-  Joint joint{.name = "j", .type = JointType::kContinuous, .parent = 0, .child = 1};
-  joint.axis = {0, 1, 0};
-  model.robot.joints.push_back(joint);
-  AssignBodiesAndColumns(&model.robot);
-  // The corners at (+-0.05, -1) reach down to -sqrt(1.0025).
-  model.objects.push_back(
-      {"floor", 0.6, {{{}, Halfspace{{0, 0, 1}, -std::sqrt(1.0025) - clearance}}}});
-  return model;
 }
 
 Edge Swing(double from, double to) {

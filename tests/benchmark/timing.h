@@ -37,6 +37,12 @@ inline double GeometricMean(const std::vector<double>& x) {
   return std::exp(sum / static_cast<double>(x.size()));
 }
 
+inline double Mean(const std::vector<double>& x) {
+  double sum = 0;
+  for (const double v : x) sum += v;
+  return sum / static_cast<double>(x.size());
+}
+
 inline double Least(const std::vector<double>& x) { return *std::min_element(x.begin(), x.end()); }
 
 /** Keeps a result alive. */

@@ -12,17 +12,12 @@ namespace cguide::numeric {
 namespace {
 
 using testing::AddPatch;
+using testing::Foot;
 using testing::PointContact;
 using testing::RandomStance;
 using testing::Stance;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Stance Foot() {
-  Stance stance;
-  AddPatch({0, 0, 0}, {0, 0, 1}, 0, 0.5, 0.125, 0.0625, &stance);
-  return stance;
-}
 
 TEST_CASE("com_m of a flat foot is the signed distance from its rectangle") {
   StabilityWorkspace workspace;

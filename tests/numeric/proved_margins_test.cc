@@ -13,17 +13,12 @@ namespace cguide::numeric {
 namespace {
 
 using testing::AddPatch;
+using testing::Foot;
 using testing::PointContact;
 using testing::RandomStance;
 using testing::Stance;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Stance Foot() {
-  Stance stance;
-  AddPatch({0, 0, 0}, {0, 0, 1}, 0, 0.5, 0.125, 0.0625, &stance);
-  return stance;
-}
 
 /** Contacts as a robot's kinematics hands them out: with errors, radii, and normals from x - y. */
 void MakeRough(Rng& rng, Stance* stance) {

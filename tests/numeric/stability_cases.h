@@ -51,6 +51,13 @@ inline void AddPatch(const Eigen::Vector3d& p, const Eigen::Vector3d& n, double 
   }
 }
 
+/** One flat foot at the origin, 250 by 125 mm. */
+inline Stance Foot() {
+  Stance stance;
+  AddPatch({0, 0, 0}, {0, 0, 1}, 0, 0.5, 0.125, 0.0625, &stance);
+  return stance;
+}
+
 /** `patches` supports of four points: feet on the floor (some on slopes), then hands, knees and a
  seat at heights and normals of their kind. The CoM is drawn within 0.35 m of the centroid. */
 inline Stance RandomStance(int patches, Rng& rng) {

@@ -8,6 +8,7 @@
 #include "cguide/exact/core/error.h"
 #include "cguide/exact/kinematics.h"
 #include "tests/numeric/geometry_models.h"
+#include "tests/verify/pendulum.h"
 
 namespace cguide::verify {
 namespace {
@@ -16,6 +17,7 @@ using Rng = std::mt19937_64;
 using numeric::Pair;
 using numeric::World;
 using test::Between;
+using test::Pendulum;
 
 /** Shapes of every kind, a different one for each link. */
 ConvexShape SomeShape(Rng& rng, int kind) {
@@ -81,23 +83,6 @@ struct Tally {
     ++(v == Verdict::kHolds ? holds : v == Verdict::kFails ? fails : undecided);
   }
 };
-
-/** A link that turns about y at the origin, its lowest corner on the circle of radius 1. */
-Model Pendulum(double clearance) {
-  Model model;
-  model.robot.links.resize(2);
-  model.robot.links[0] = {.name = "base", .mass = 1};
-  model.robot.links[1] = {.name = "arm", .joint = 0, .mass = 1};
-  model.robot.links[1].shapes.push_back({{{0, 0, -0.5}, {}}, Box{{0.1, 0.1, 1}}});
-  Joint joint{.name = "j", .type = JointType::kContinuous, .parent = 0, .child = 1};
-  joint.axis = {0, 1, 0};
-  model.robot.joints.push_back(joint);
-  AssignBodiesAndColumns(&model.robot);
-  // The corners at (+-0.05, -1) reach down to -sqrt(1.0025).
-  model.objects.push_back(
-      test::OneObject("floor", Halfspace{{0, 0, 1}, -std::sqrt(1.0025) - clearance}));
-  return model;
-}
 
 Edge Swing(const Model& model) {
   Edge edge{test::At(Eigen::Vector3d::Zero()), test::At(Eigen::Vector3d::Zero())};

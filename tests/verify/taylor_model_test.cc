@@ -6,11 +6,13 @@
 
 #include "cguide/exact/core/rational.h"
 #include "cguide/exact/mp_interval_internal.h"
+#include "tests/verify/taylor_reference.h"
 
 namespace cguide::verify {
 namespace {
 
 using exact::internal::MpInterval;
+using test::Polynomial;
 using Rng = std::mt19937_64;
 
 double Between(Rng& rng, double a, double b) {
@@ -35,13 +37,6 @@ TaylorModel<N> RandomModel(Rng& rng) {
   for (double& c : a.c) c = Number(rng);
   a.r = std::abs(Number(rng)) * (rng() % 2 ? 1e-14 : 0.1);
   return a;
-}
-
-template <int N>
-Rational Polynomial(const TaylorModel<N>& a, const Rational& t) {
-  Rational value = 0;
-  for (int k = N; k >= 0; --k) value = value * t + Lift(a.c[k]);
-  return value;
 }
 
 /** A member of the model at t: the polynomial, moved by a share of the remainder. */

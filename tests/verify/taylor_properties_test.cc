@@ -7,11 +7,13 @@
 #include "cguide/exact/mp_interval_internal.h"
 #include "cguide/verify/taylor_model.h"
 #include "tests/property.h"
+#include "tests/verify/taylor_reference.h"
 
 namespace cguide::verify {
 namespace {
 
 using exact::internal::MpInterval;
+using test::Polynomial;
 
 /** m 2^e: short numbers first, then long mantissas and far exponents. */
 double DrawNumber() {
@@ -27,13 +29,6 @@ TaylorModel<N> DrawModel() {
   for (double& c : a.c) c = DrawNumber();
   a.r = std::abs(DrawNumber());
   return a;
-}
-
-template <int N>
-Rational Polynomial(const TaylorModel<N>& a, const Rational& t) {
-  Rational value = 0;
-  for (int k = N; k >= 0; --k) value = value * t + Lift(a.c[k]);
-  return value;
 }
 
 template <int N>

@@ -73,7 +73,7 @@ struct PatchPart {
 };
 
 /** Whatever of the obstacles is near the site's foot is not above the plane by more than `slack`,
- and some of it is near the foot for every t (FORMAT.md, lemma 10). */
+ and some of it is near the foot for every t (FORMAT.md, lemma 11). */
 struct PatchEvidence {
   Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< need not be unit; the plane is n.z = m0
   double m0 = 0;
