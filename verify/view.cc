@@ -1,5 +1,6 @@
 #include "cguide/verify/view.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -51,6 +52,11 @@ void CheckFrame(const ViewInput& input, const ViewFrame& frame, const std::strin
 }
 
 void CheckInput(const ViewInput& input) {
+  const std::size_t edges = std::max<std::size_t>(2, input.path.waypoints.size()) - 1;
+  if (!input.proved_edges.empty() && input.proved_edges.size() != edges) {
+    Refuse("proved_edges",
+           std::to_string(input.proved_edges.size()) + " for " + std::to_string(edges) + " edges");
+  }
   if (input.frames.empty()) Refuse("frames", "there are none; give at least one instant");
   for (std::size_t i = 0; i < input.frames.size(); ++i) {
     const std::string place = "frame " + std::to_string(i);
@@ -67,8 +73,15 @@ void CheckInput(const ViewInput& input) {
   }
 }
 
-std::string VerdictName(Verdict verdict) {
-  switch (verdict) {
+bool AllProved(const ViewInput& input) {
+  const auto& proved = input.proved_edges;
+  return input.verdict != Verdict::kFails && !proved.empty() &&
+         std::all_of(proved.begin(), proved.end(), [](bool p) { return p; });
+}
+
+std::string VerdictName(const ViewInput& input) {
+  if (AllProved(input)) return "proved";
+  switch (input.verdict) {
     case Verdict::kHolds:
       return "holds";
     case Verdict::kFails:
@@ -80,6 +93,7 @@ std::string VerdictName(Verdict verdict) {
 }
 
 std::string Headline(const ViewInput& input) {
+  if (AllProved(input)) return "Proved for every instant";
   switch (input.verdict) {
     case Verdict::kHolds:
       return "Holds at every instant that was sampled";
@@ -131,6 +145,12 @@ std::string WorstRows(const ViewInput& input) {
   return out;
 }
 
+constexpr const char* kProvedLegend = "<span><i class=\"held\"></i>proved for every s</span>";
+constexpr const char* kNothingBetween = "between two of them nothing is claimed";
+constexpr const char* kProvedBetween =
+    "of what lies between two of them nothing is claimed but where the line above the strip says "
+    "that the edge is proved";
+
 }  // namespace
 
 std::string RenderPage(const ViewInput& input) {
@@ -138,7 +158,9 @@ std::string RenderPage(const ViewInput& input) {
   const report::PageData data = report::PackPageData(input);
   return report::FillTemplate(report::kPageHtml, [&](std::string_view name) -> std::string {
     if (name == "title") return EscapeHtml(input.title);
-    if (name == "verdict") return VerdictName(input.verdict);
+    if (name == "verdict") return VerdictName(input);
+    if (name == "legend") return input.proved_edges.empty() ? "" : kProvedLegend;
+    if (name == "between") return input.proved_edges.empty() ? kNothingBetween : kProvedBetween;
     if (name == "headline") return Headline(input);
     if (name == "tested") return EscapeHtml(input.tested);
     if (name == "summary") return EscapeHtml(input.summary);

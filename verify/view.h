@@ -62,6 +62,9 @@ struct ViewInput {
   std::string tested;                     ///< how the verdicts came about: "sampled(0.01)"
   Verdict verdict = Verdict::kUndecided;  ///< of the guide as a whole
   std::string summary;                    ///< one or two sentences under the verdict
+  /** For each edge: a proof that all of it, for every s, is in C_guide has been accepted. Empty
+   where there is no certificate: then the page does not speak of proofs. */
+  std::vector<bool> proved_edges;
   Model model;
   Path path;
   std::vector<ViewFrame> frames;   ///< ordered by (edge, s); at least one
@@ -83,11 +86,13 @@ struct ViewInput {
  U+FFFD. The same input gives the same bytes.
 
  Not promised: that the drawing between two frames is where the robot is (each body is interpolated
- on its own). The page repeats the verdicts it is given and decides nothing.
+ on its own). Where all edges are proved the verdict is "proved", unless it was given as one that
+ fails; proved edges are underlined in the timeline. The page repeats the verdicts it is given and
+ decides nothing.
 
- @throws Error (kInvalidArgument) where there is no frame, frames are out of order or off the path,
-         a frame has the wrong number of poses, an index is out of range, or a pose, contact,
- support corner or centre of mass is not finite. */
+ @throws Error (kInvalidArgument) where there is no frame, proved_edges are not as many as edges,
+ frames are out of order or off the path, a frame has the wrong number of poses, an index is out of
+ range, or a pose, contact, support corner or centre of mass is not finite. */
 std::string RenderPage(const ViewInput& input);
 
 }  // namespace cguide::verify

@@ -81,6 +81,30 @@ TEST_CASE("the verdict of the guide stands on the page as it was given") {
   }
 }
 
+TEST_CASE("proofs stand on the page where they were given, and do not outvote a violation") {
+  ViewInput input = DemoInput();
+  const std::size_t edges = input.path.waypoints.size() - 1;
+  input.verdict = Verdict::kHolds;
+  input.proved_edges.assign(edges, true);
+  std::string html = RenderPage(input);
+  CHECK(html.find("data-verdict=\"proved\"") != std::string::npos);
+  CHECK(html.find("<h1>Proved for every instant</h1>") != std::string::npos);
+  CHECK(html.find(">proved for every s</span>") != std::string::npos);
+  CHECK(html.find("between two of them nothing is claimed,") == std::string::npos);
+  input.proved_edges[edges - 1] = false;
+  html = RenderPage(input);
+  CHECK(html.find("data-verdict=\"holds\"") != std::string::npos);
+  CHECK(html.find("<h1>Holds at every instant that was sampled</h1>") != std::string::npos);
+  std::string held = "\"held\":[";
+  for (std::size_t i = 0; i < edges; ++i) held += i + 1 < edges ? "1," : "0]";
+  CHECK(html.find(held) != std::string::npos);
+  input.proved_edges.assign(edges, true);
+  input.verdict = Verdict::kFails;
+  CHECK(RenderPage(input).find("data-verdict=\"fails\"") != std::string::npos);
+  input.proved_edges.push_back(true);
+  CHECK(MessageOf(input).find("proved_edges") != std::string::npos);
+}
+
 TEST_CASE("no text of the input changes the page's structure") {
   const std::vector<std::string> expected = ReadTags(RenderPage(DemoInput()));
   const std::string hostile[] = {"</script><img src=x onerror=alert(1)>",

@@ -89,9 +89,12 @@ CheckReport CheckCertificate(const Certificate& certificate, const CheckOptions&
   const std::vector<Edge> edges = EdgesOf(certificate.path);
   CheckReport report;
   report.edges = static_cast<int>(edges.size());
+  report.in_guide.assign(edges.size(), true);
   for (std::size_t i = 0; i < certificate.path.waypoints.size(); ++i) {
     const std::string joint = CheckLimits(robot, certificate.path.waypoints[i]);
     if (joint.empty()) continue;
+    if (i > 0) report.in_guide[i - 1] = false;
+    if (i < edges.size()) report.in_guide[i] = false;
     report.refused.push_back("waypoint " + std::to_string(i) + ": joint \"" + joint +
                              "\" is beyond its limits");
   }
@@ -112,6 +115,7 @@ CheckReport CheckCertificate(const Certificate& certificate, const CheckOptions&
   }
   for (int i = 0; i < report.edges; ++i) {
     report.proved += proved[i];
+    if (!proved[i]) report.in_guide[i] = false;
     if (!claimed[i]) report.missing.push_back(i);
   }
   return report;

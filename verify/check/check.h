@@ -53,6 +53,8 @@ struct CheckReport {
   int proved = 0;                    ///< whose proof holds
   std::vector<std::string> refused;  ///< one line for each limit or proof that does not hold
   std::vector<int> missing;          ///< edges without a proof
+  /** For each edge: its proof holds and its ends are within limits, so all of it is in C_guide. */
+  std::vector<bool> in_guide;
   /** Every edge is proved, every waypoint within limits: the path is in C_guide from start to goal.
    */
   bool IsProved() const { return refused.empty() && missing.empty(); }

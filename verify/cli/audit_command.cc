@@ -1,7 +1,5 @@
 #include <filesystem>
-#include <fstream>
 #include <iostream>
-#include <sstream>
 
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/io/guide_io.h"
@@ -73,14 +71,11 @@ int AuditSamplesOf(const AuditArguments& arguments, const Subject& subject,
  * refused. */
 std::vector<check::EdgeProof> KnownProofs(const AuditArguments& arguments, const Subject& subject) {
   if (!arguments.resume || !std::filesystem::exists(arguments.certificate)) return {};
-  std::ifstream file(arguments.certificate, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
   check::Certificate known;
   try {
-    known = check::ParseCertificate(text.str());
+    known = ReadCertificate(arguments.certificate);
   } catch (const Error& e) {
-    throw Error(e.code(), arguments.certificate + ": " + e.what() + "; remove it to begin anew");
+    throw Error(e.code(), std::string(e.what()) + "; remove it to begin anew");
   }
   if (!IsAbout(known, subject) || !(known.robust == ParseRobustness(arguments.robust))) {
     throw Error(Error::Code::kBadInput,

@@ -99,6 +99,7 @@ struct ViewArguments {
   PathArguments reading;
   std::string problem;
   std::string output;
+  std::string certificate;  ///< may be empty
   int frames = 0;  ///< 0: chosen from the guide's length
 };
 

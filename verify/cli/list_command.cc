@@ -144,7 +144,7 @@ std::vector<check::EdgeProof> ProofsBefore(const ListRun& run, const Subject& su
                                            const fs::path& file) {
   if (!run.arguments.resume || !fs::exists(file)) return {};
   try {
-    check::Certificate known = check::ParseCertificate(numeric::io::ReadFileBytes(file, kMaxBytes));
+    check::Certificate known = ReadCertificate(file);
     const bool same_box = known.robust == ParseRobustness(run.arguments.robust);
     if (same_box && IsAbout(known, subject)) return std::move(known.proofs);
   } catch (const Error&) {

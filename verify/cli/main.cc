@@ -201,6 +201,9 @@ CLI::App* AddView(CLI::App& app, ViewArguments* a) {
   c->add_option("--problem", a->problem, "Problem file; default: the one the guide names");
   AddReading(c, &a->reading);
   c->add_option("-o,--output", a->output, "Page to write (HTML)")->required();
+  c->add_option(
+      "--certificate", a->certificate,
+      "Certificate of this path: it is checked, and the page says which edges are proved");
   c->add_option("--frames", a->frames, "Frames of the animation")->check(CLI::Range(2, 5000));
   AddCommon(c, &a->common);
   return c;

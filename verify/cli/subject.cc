@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/numeric/io/file_internal.h"
 #include "cguide/numeric/io/foreign_path.h"
 #include "cguide/numeric/io/guide_io.h"
 #include "cguide/verify/cli/console.h"
@@ -119,6 +120,16 @@ Subject ReadSubject(const CommonArguments& common, const std::string& path_file,
   subject.edges = guide.edges;
   subject.origin = "cguide " + guide.tool_version + ", seed " + std::to_string(guide.seed);
   return subject;
+}
+
+check::Certificate ReadCertificate(const std::string& file) {
+  constexpr std::size_t kMostBytes = std::size_t{256} << 20;
+  const std::string bytes = numeric::io::ReadFileBytes(file, kMostBytes);
+  try {
+    return check::ParseCertificate(bytes);
+  } catch (const Error& e) {
+    throw Error(e.code(), file + ": " + e.what());
+  }
 }
 
 bool IsAbout(const check::Certificate& certificate, const Subject& subject) {

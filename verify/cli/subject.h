@@ -31,6 +31,9 @@ Subject ReadSubject(const CommonArguments& common, const std::string& path_file,
                     const std::string& problem_file, const PathArguments& reading = {},
                     const ProblemReader& read_problem = numeric::io::ReadProblem);
 
+/** @throws Error, with the file's name, where it cannot be read or is no certificate. */
+check::Certificate ReadCertificate(const std::string& file);
+
 /** Whether a certificate is about this model and this path, and not another one. */
 bool IsAbout(const check::Certificate& certificate, const Subject& subject);
 

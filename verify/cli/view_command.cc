@@ -5,12 +5,14 @@
 #include "cguide/numeric/io/guide_io.h"
 #include "cguide/numeric/margins.h"
 #include "cguide/verify/audit_report.h"
+#include "cguide/verify/check/check.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
 #include "cguide/verify/cli/subject.h"
 #include "cguide/verify/cli/version.h"
 #include "cguide/verify/view.h"
 #include "cguide/verify/view_frames.h"
+#include "cguide/verify/whole_report.h"
 
 namespace cguide::cli {
 namespace {
@@ -46,12 +48,38 @@ std::vector<verify::ViewInstant> WorstInstants(const Model& model,
   return worst;
 }
 
-std::string Summary(const verify::SampledAudit& audit) {
+/** What a certificate of this path proves. */
+struct Proof {
+  std::string text;         ///< what was read of it
+  std::vector<bool> edges;  ///< which are proved; empty without a certificate
+};
+
+// Throws Error where the file is no certificate, or one of another path.
+Proof ReadProof(const std::string& file, const Subject& subject) {
+  if (file.empty()) return {};
+  const check::Certificate certificate = ReadCertificate(file);
+  if (!IsAbout(certificate, subject)) {
+    throw Error(Error::Code::kBadInput,
+                file + ": it is about another model or path; write one with cguide audit");
+  }
+  const check::CheckReport report = check::CheckCertificate(certificate);
+  const auto proved = std::count(report.in_guide.begin(), report.in_guide.end(), true);
+  std::string text = std::to_string(proved) + " of " + std::to_string(report.edges) +
+                     " edges proved for every s, the proofs checked again";
+  if (!(certificate.robust == check::Robustness{})) {
+    text += ", for " + verify::DescribeRobustness(certificate.robust);
+  }
+  return {text + ".", report.in_guide};
+}
+
+std::string Summary(const verify::SampledAudit& audit, const Proof& proof) {
   const std::string samples =
       std::to_string(audit.samples) + " samples on " + std::to_string(audit.edges) + " edges";
   const std::size_t count = audit.violations.size();
+  if (count == 0 && !proof.text.empty())
+    return proof.text + " " + samples + ", none leaves C_guide.";
   if (count == 0) return samples + ", none leaves C_guide. Nothing is said of the motion between.";
-  return samples + ", " + std::to_string(count) +
+  return (proof.text.empty() ? "" : proof.text + " ") + samples + ", " + std::to_string(count) +
          (count == 1 ? " stretch leaves C_guide." : " stretches leave C_guide.");
 }
 
@@ -85,6 +113,7 @@ int RunView(const ViewArguments& arguments) {
   const Subject subject =
       ReadSubject(arguments.common, arguments.guide, arguments.problem, arguments.reading);
   const numeric::World world(subject.problem.model);
+  const Proof proof = ReadProof(arguments.certificate, subject);
   verify::SampledAuditOptions audit_options;
   audit_options.step = kViewStep;
   audit_options.threads = ThreadCount(arguments.common);
@@ -97,10 +126,15 @@ int RunView(const ViewArguments& arguments) {
                       {"made by", subject.origin.empty() ? "another program" : subject.origin},
                       {"model", subject.problem.model_digest},
                       {"page by", std::string("cguide ") + kVersion}};
+  if (!arguments.certificate.empty()) {
+    input.provenance.push_back({"certificate", arguments.certificate});
+  }
   if (!subject.edges.empty()) input.provenance.push_back({"planned edges", subject.edges});
   input.tested = "sampled(" + Short(kViewStep) + ")";
+  if (!proof.edges.empty()) input.tested = "certificate and " + input.tested;
   input.verdict = audit.verdict;
-  input.summary = Summary(audit);
+  input.proved_edges = proof.edges;
+  input.summary = Summary(audit, proof);
   input.model = subject.problem.model;
   input.path = subject.path;
   input.worst = WorstInstants(input.model, audit);

@@ -29,7 +29,7 @@ export function readPageData() {
   const objects = json.objects.map((object) => ({...object, pieces: object.pieces.map(openMesh)}));
   return {
     robot: json.robot, bodies, objects, frames: new Frames(json.frames, floats, words, bodies.length),
-    length: json.length, waypoints: json.waypoints, worst: json.worst,
+    length: json.length, waypoints: json.waypoints, held: json.held, worst: json.worst,
   };
 }
 

@@ -254,12 +254,15 @@ PageData PackPageData(const ViewInput& input) {
                     JsonNumber(clock.At(instant.edge, instant.s)) + R"(,"frame":)" +
                     std::to_string(NearestFrame(input, clock, instant.edge, instant.s)) + "}");
   }
+  std::vector<std::string> held;
+  for (const bool proved : input.proved_edges) held.push_back(proved ? "1" : "0");
   PageData data;
   data.json = R"({"robot":)" + JsonString(input.model.robot.name) + R"(,"bodies":)" +
               WriteBodies(input.model.robot, &blob) + R"(,"objects":)" +
               WriteObjects(input.model.objects, &blob) + R"(,"frames":)" +
               WriteFrames(input, clock, &blob) + R"(,"length":)" + JsonNumber(clock.length()) +
-              R"(,"waypoints":)" + JsonArray(waypoints) + R"(,"worst":)" + JsonArray(worst) + "}";
+              R"(,"waypoints":)" + JsonArray(waypoints) + R"(,"held":)" + JsonArray(held) +
+              R"(,"worst":)" + JsonArray(worst) + "}";
   data.blob = blob.Text();
   return data;
 }

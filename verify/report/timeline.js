@@ -54,6 +54,7 @@ export class Timeline {
     this.drawAxis(pen);
     this.drawCurves(pen);
     this.drawStrip(pen);
+    this.drawHeld(pen);
     this.drawMarkers(pen);
     this.drawCursor();
   }
@@ -146,6 +147,17 @@ export class Timeline {
         f = end;
       }
     }
+  }
+
+  // A line over the strip along the edges that hold as a whole.
+  drawHeld(pen) {
+    const {held, waypoints} = this.data;
+    pen.fillStyle = this.theme.ink;
+    held.forEach((holds, edge) => {
+      if (!holds) return;
+      const from = this.snap(this.x(waypoints[edge])), to = this.snap(this.x(waypoints[edge + 1] ?? 1));
+      pen.fillRect(from, this.size.height - STRIP - 2, Math.max(2.5, to - from), 2);
+    });
   }
 
   fillStrip(pen, name, frame, x, y, wide) {
