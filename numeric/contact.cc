@@ -41,6 +41,7 @@ struct SiteQuery {
     for (int index : near) {
       const ObstaclePiece& piece = g.pieces[index];
       if (piece.kind == PieceKind::kConvex) {
+        if (IsBeyond(piece.convex, site.x, reach + site.error)) continue;
         AddCandidate(index, -1, ProjectPoint(piece.convex, site.x), reach);
       } else if (piece.kind == PieceKind::kHalfspace) {
         PointProjection p;

@@ -124,12 +124,24 @@ Vector3d CoreSupport(const Convex& s, const Vector3d& n) {
   return s.R * s.points[best];
 }
 
+// R is within 8 u of a rotation for the obstacles this is used on: x - c, turned, is off by at most
+// 16 u (|x| + |c|), a clamped or scaled vector by as much, and the way back by 8 u more of it.
+static double ProjectionError(const Convex& s, const Vector3d& x) {
+  return s.error + 96 * kUnit * x.norm();
+}
+
+// Squares and the sum of three are off by less than 4 u of it.
+bool IsBeyond(const Convex& s, const Vector3d& x, double reach) {
+  if (s.kind != CoreKind::kBox) return false;
+  const Vector3d l = s.R.transpose() * (x - s.c);
+  const double squared = (l.cwiseAbs() - s.half).cwiseMax(0.0).squaredNorm();
+  const double least = reach + s.radius + ProjectionError(s, x);
+  return least >= 0 && squared > least * least * (1 + 16 * kUnit);
+}
+
 PointProjection ProjectPoint(const Convex& s, const Vector3d& x) {
   PointProjection p;
-  // R is within 8 u of a rotation for the obstacles this is used on: x - c, turned, is off by at
-  // most 16 u (|x| + |c|), a clamped or scaled vector by as much, and the way back by 8 u more of
-  // it.
-  p.distance_error = s.error + 96 * kUnit * x.norm();
+  p.distance_error = ProjectionError(s, x);
   p.y_error = p.distance_error;
   switch (s.kind) {
     case CoreKind::kBox:

@@ -121,6 +121,10 @@ inline double NormalBound(const PointProjection& p, double error) {
  outside; inside a kPoints set the distance is only an estimate (>= -depth is not promised). */
 PointProjection ProjectPoint(const Convex& s, const Eigen::Vector3d& x);
 
+/** True only where the distance that ProjectPoint gives, less its error, is at least `reach`; a
+ fraction of its work. False says nothing. */
+bool IsBeyond(const Convex& s, const Eigen::Vector3d& x, double reach);
+
 /** The unit normal of the triangle abc along (b - a) x (c - a), and a bound on its error where
  every corner is within `error`; infinite where the triangle has no area. */
 struct TriangleNormal {

@@ -1,7 +1,8 @@
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <iterator>
 
 #include "cguide/verify/leaf_balance_internal.h"
 
@@ -16,6 +17,14 @@ using Eigen::Vector3d;
 constexpr int kPlaces = 4;
 constexpr double kRoundingAngle = 1.5e-4;
 
+/** cos(2 pi k / kDirections), |k| < kDirections. */
+constexpr int kDirections = 16;
+double Cosine(int k) {
+  constexpr double c1 = 0.92387953251128674, c2 = 0.70710678118654752, c3 = 0.38268343236508977;
+  constexpr double kTable[] = {1, c1, c2, c3, 0, -c3, -c2, -c1, -1, -c1, -c2, -c3, 0, c3, c2, c1};
+  return kTable[k < 0 ? -k : k];
+}
+
 Vector6d WrenchOf(const AppliedForce& force) {
   Vector6d wrench;
   wrench << force.u, force.p.cross(force.u);
@@ -25,7 +34,10 @@ Vector6d WrenchOf(const AppliedForce& force) {
 }  // namespace
 
 double ShortNumber(double x, int places) {
-  const double scale = std::pow(10, places);
+  constexpr double kScales[] = {1e0, 1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,
+                                1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17};
+  assert(places >= 0 && places < static_cast<int>(std::size(kScales)));
+  const double scale = kScales[places];
   const double rounded = std::round(x * scale) / scale;
   return std::isfinite(rounded) ? rounded : x;
 }
@@ -50,9 +62,9 @@ void BalanceProposer::AddDirections(int index, const KeptContact& contact, const
   if (!(used < 1)) return;
   const double slope = std::sqrt(1 / (used * used) - 1);
   const Vector3d a = contact.n_W.unitOrthogonal(), b = contact.n_W.cross(a);
-  for (int k = 0; k < effort.sides; ++k) {
-    const double angle = 2 * M_PI * k / effort.sides;
-    Vector3d u = contact.n_W + slope * (std::cos(angle) * a + std::sin(angle) * b);
+  const int stride = kDirections / effort.sides;
+  for (int k = 0; k < kDirections; k += stride) {
+    Vector3d u = contact.n_W + slope * (Cosine(k) * a + Cosine(k - kDirections / 4) * b);
     if (is_short) {
       for (double& x : u) x = ShortNumber(x, kPlaces);
     }
@@ -65,17 +77,26 @@ void BalanceProposer::PlaceColumns(const std::vector<Arm>& arms, double t) {
   for (const ProposedForce& d : directions_) columns_.push_back({arms[d.contact].At(t), d.u_W});
 }
 
-/** The six columns that pivoting takes first; moments count per metre. */
+/** Six columns, each the one that is farthest from the span of those before; moments count per
+ metre. */
 bool BalanceProposer::ChooseBasis() {
   constexpr int kMost = 256;
   const int count = std::min(static_cast<int>(columns_.size()), kMost);
   if (count < 6) return false;
   Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMost> A(6, count);
   for (int j = 0; j < count; ++j) A.col(j) = WrenchOf(columns_[j]);
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
-  const auto& R = qr.matrixQR();
-  if (!(std::abs(R(5, 5)) > 1e-6 * std::abs(R(0, 0)))) return false;
-  basis_.assign(qr.colsPermutation().indices().data(), qr.colsPermutation().indices().data() + 6);
+  basis_.clear();
+  double longest = 0;
+  for (int k = 0; k < 6; ++k) {
+    int best = 0;
+    const double length = std::sqrt(A.colwise().squaredNorm().maxCoeff(&best));
+    longest = std::max(longest, length);
+    if (!(length > 1e-6 * longest)) return false;
+    basis_.push_back(best);
+    const Vector6d q = A.col(best) / length;
+    for (int j = 0; j < count; ++j) A.col(j) -= q.dot(A.col(j)) * q;
+    A.col(best).setZero();
+  }
   return true;
 }
 

@@ -93,6 +93,27 @@ TEST_CASE("projections lie on the set and no member is nearer") {
   CHECK(outside > 1000);
 }
 
+TEST_CASE("what is said to be beyond a reach is, and of boxes it is said but for rounding") {
+  std::mt19937_64 rng(12);
+  int beyond = 0, within = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Owned owned = RandomConvex(rng, i % 5);
+    const Vector3d x = RandomPoint(rng, 2);
+    const PointProjection p = ProjectPoint(owned.s, x);
+    const double offset = std::ldexp(Between(rng, -1, 1), -static_cast<int>(rng() % 60));
+    const double reach = p.distance + offset;
+    const bool is_beyond = IsBeyond(owned.s, x, reach);
+    if (is_beyond) CHECK(p.distance - p.distance_error >= reach);
+    if (owned.s.kind == CoreKind::kBox && p.distance > 0 && reach + owned.s.radius > 0 &&
+        offset < -4 * p.distance_error) {
+      CHECK(is_beyond);
+    }
+    ++(is_beyond ? beyond : within);
+  }
+  CHECK(beyond > 1000);
+  CHECK(within > 1000);
+}
+
 TEST_CASE("inside, the signed distance leads to the boundary and agrees with the depth") {
   std::mt19937_64 rng(3);
   for (int i = 0; i < 2000; ++i) {
