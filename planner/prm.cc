@@ -57,6 +57,7 @@ class Builder {
 
  private:
   int Insert(const Configuration& q) {
+    if (const int known = roadmap_.Find(q); known >= 0) return known;
     Growth growth;
     growth.node = q;
     ConnectToNeighbours(0, &growth);
@@ -68,18 +69,19 @@ class Builder {
         static_cast<int>(std::min<long>(kBatchSize, run_.iteration_limit - result_.iterations));
     std::array<Growth, kBatchSize> growths;
     RunJobs(count, run_.threads, [&](int i, int worker) {
-      growths[static_cast<std::size_t>(i)] = Grow(result_.iterations + i, worker);
+      growths[static_cast<std::size_t>(i)] = Grow(roadmap_.samples() + i, worker);
     });
     for (int i = 0; i < count; ++i) {
       ++result_.iterations;
+      roadmap_.CountSamples(1);
       Merge(growths[static_cast<std::size_t>(i)]);
       if (roadmap_.Component(first) == roadmap_.Component(last)) return true;
     }
     return false;
   }
 
-  Growth Grow(long iteration, int worker) {
-    numeric::Rng rng = JobRng(run_.seed, static_cast<std::uint64_t>(iteration));
+  Growth Grow(long sample_number, int worker) {
+    numeric::Rng rng = JobRng(run_.seed, static_cast<std::uint64_t>(sample_number));
     Growth growth;
     growth.counters.samples = 1;
     const Configuration sample = numeric::SampleConfiguration(sampling_, world_.model().robot, rng);

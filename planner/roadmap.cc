@@ -40,6 +40,11 @@ int Roadmap::Component(int i) const {
   return static_cast<int>(at);
 }
 
+int Roadmap::Find(const Configuration& q) const {
+  const auto found = std::find(nodes_.begin(), nodes_.end(), q);
+  return found == nodes_.end() ? -1 : static_cast<int>(found - nodes_.begin());
+}
+
 std::vector<int> Roadmap::Nearest(const Configuration& q, int k) const {
   std::vector<std::pair<double, int>> order;
   order.reserve(nodes_.size());

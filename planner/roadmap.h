@@ -32,6 +32,14 @@ class Roadmap {
   int num_nodes() const { return static_cast<int>(nodes_.size()); }
   int num_edges() const { return static_cast<int>(edges_.size()); }
   const Configuration& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  const Edge& edge(int i) const { return edges_[static_cast<std::size_t>(i)]; }
+
+  /** Samples that were drawn to make it, of which later growth takes the next. */
+  long samples() const { return samples_; }
+  void CountSamples(long n) { samples_ += n; }
+
+  /** The node that is this very configuration, or -1. */
+  int Find(const Configuration& q) const;
 
   /** A representative of the connected component of node i: equal exactly for connected nodes. */
   int Component(int i) const;
@@ -46,6 +54,7 @@ class Roadmap {
   std::vector<Configuration> nodes_;
   std::vector<std::vector<Link>> links_;
   std::vector<Edge> edges_;
+  long samples_ = 0;
   mutable std::vector<int> component_;  // union-find with path halving
 };
 

@@ -99,6 +99,26 @@ section_main_job() {
   expect 0 doctor
 }
 
+section_roadmap() {
+  expect 2 plan "$room" -o "$work/g.json" --roadmap "$work/map.json"
+  says "--planner prm"
+  expect 0 plan "$room" -o "$work/g1.json" --planner prm --seed 7 --roadmap "$work/map.json"
+  expect 0 plan "$room" -o "$work/g2.json" --planner prm --seed 8 --roadmap "$work/map.json" --stats "$work/stats.json" --shortcuts 0
+  says "proved"
+  grep -q '"iterations": 0' "$work/stats.json" || fail "the roadmap was not used again"
+  cp "$work/map.json" "$work/map0.json"
+  expect 0 plan "$room" -o "$work/g3.json" --planner prm --seed 8 --roadmap "$work/map.json"
+  cmp -s "$work/map.json" "$work/map0.json" || fail "a query that the roadmap answers changed it"
+  expect 3 plan "$room" -o "$work/g.json" --planner prm --roadmap "$work/map.json" --edges sampled
+  says "tested otherwise"
+  expect 3 plan "$room" -o "$work/g.json" --planner prm --roadmap "$work/map.json" --space free
+  says "space"
+  expect 3 plan "$a1" -o "$work/g.json" --planner prm --roadmap "$work/map.json"
+  says "another model"
+  expect 3 plan "$room" -o "$work/g.json" --planner prm --roadmap "$work/g1.json"
+  says "cguide-guide/1"
+}
+
 section_reproducible() {
   expect 0 plan "$a1" -o "$work/one.json" --seed 7 --threads 1
   expect 0 plan "$a1" -o "$work/two.json" --seed 7 --threads 2

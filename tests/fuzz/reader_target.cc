@@ -11,6 +11,7 @@
 #include "cguide/numeric/io/guide_io.h"
 #include "cguide/numeric/io/mesh_reader.h"
 #include "cguide/numeric/io/problem_reader.h"
+#include "cguide/numeric/io/roadmap_io.h"
 #include "cguide/numeric/io/robot_reader.h"
 #include "tests/cases/gold.h"
 
@@ -90,6 +91,9 @@ void Read(int reader, const std::uint8_t* data, std::size_t size) {
     case 13:
       io::DetectPathFormat(Written(".path", data, size));
       return;
+    case 15:
+      io::ReadRoadmap(Written(".json", data, size));
+      return;
     case 14:
       cguide::testing::ReadGoldBodies(Written(".txt", data, size).string());
       return;
@@ -104,7 +108,7 @@ void Read(int reader, const std::uint8_t* data, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   try {
-    Read(data[0] % 16, data + 1, size - 1);
+    Read(data[0] % 17, data + 1, size - 1);
   } catch (const cguide::Error&) {
   }
   return 0;

@@ -69,7 +69,26 @@ TEST_CASE("PRM solves the floor and answers again from its roadmap") {
   const PlanResult again = plan(&roadmap);
   REQUIRE(again.stop == StopReason::kSolved);
   CHECK(again.iterations == 0);
+  CHECK(again.waypoints == first.waypoints);
   CheckGuide(room, again.waypoints, Space::kGuide);
+}
+
+TEST_CASE("a roadmap that did not suffice goes on with samples of its own") {
+  const Room room("chair_and_table");
+  const EdgeOracle oracle = numeric::MakeSampledOracle(room.world, {});
+  const auto grow = [&](long iterations, Roadmap* map) {
+    RunOptions run = Limited(2, 1);
+    run.iteration_limit = iterations;
+    PlanPrm(room.world, room.problem.sampling, room.problem.start, room.problem.goal, oracle, {},
+            {}, run, map);
+  };
+  Roadmap whole, parts;
+  grow(128, &whole);
+  for (int i = 0; i < 2; ++i) grow(64, &parts);
+  CHECK(parts.samples() == whole.samples());
+  REQUIRE(parts.num_nodes() == whole.num_nodes());
+  CHECK(parts.num_edges() == whole.num_edges());
+  for (int i = 0; i < whole.num_nodes(); ++i) CHECK(parts.node(i) == whole.node(i));
 }
 
 TEST_CASE("PRM gets up from the chair") {

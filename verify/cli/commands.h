@@ -45,7 +45,8 @@ struct PlanArguments {
   double extension = 0;           ///< 0: the planner's default
   std::string link = "straight";  ///< straight, flow
   int shortcut_rounds = 120;
-  std::string stats;  ///< file for times and counters, or empty
+  std::string stats;    ///< file for times and counters, or empty
+  std::string roadmap;  ///< of prm: file that is read, if it is there, and written; or empty
 };
 
 struct AuditArguments {
@@ -100,7 +101,7 @@ struct ViewArguments {
   std::string problem;
   std::string output;
   std::string certificate;  ///< may be empty
-  int frames = 0;  ///< 0: chosen from the guide's length
+  int frames = 0;           ///< 0: chosen from the guide's length
 };
 
 /** Each runs one command and returns its exit code; errors leave as cguide::Error. */

@@ -69,6 +69,13 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
   c->add_option("--stats", a->stats, "File for times and counters (JSON)");
+  c->add_option("--roadmap", a->roadmap,
+                "With --planner prm: roadmap to use again, if the file is there, and to write");
+  c->callback([a] {
+    if (!a->roadmap.empty() && a->planner != "prm") {
+      throw CLI::ValidationError("--roadmap", "needs --planner prm");
+    }
+  });
   AddCommon(c, &a->common);
   return c;
 }

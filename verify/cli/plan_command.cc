@@ -16,6 +16,7 @@
 #include "cguide/verify/certificate_writer.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
+#include "cguide/verify/cli/roadmap_option.h"
 #include "cguide/verify/cli/robust_option.h"
 #include "cguide/verify/cli/version.h"
 #include "cguide/verify/whole_audit.h"
@@ -40,6 +41,12 @@ bool DecidesWholeEdges(const PlanArguments& arguments, const Model& model) {
 /** Contacts mean nothing in C_free: there the plain trees are left. */
 bool SearchesContacts(const PlanArguments& arguments) {
   return arguments.planner == "contacts" && arguments.space == "guide";
+}
+
+/** How the oracle accepts edges. */
+std::string DescribeTest(const PlanArguments& arguments, const Model& model) {
+  if (!DecidesWholeEdges(arguments, model)) return "sampled(" + Short(arguments.edge_step) + ")";
+  return arguments.robust.empty() ? "whole" : "whole(" + arguments.robust + ")";
 }
 
 EdgeOracle MakeOracle(const PlanArguments& arguments, const World& world, numeric::Space space) {
@@ -86,15 +93,27 @@ planner::RunOptions MakeRun(const PlanArguments& arguments, ProgressLine* progre
   return run;
 }
 
+/** A roadmap that did not suffice is written too: the next run goes on from there. */
+PlanResult SearchRoadmap(const PlanArguments& arguments, const World& world, const Problem& problem,
+                         const Plan& plan, const EdgeOracle& oracle,
+                         const planner::ExtensionOptions& extension,
+                         const planner::RunOptions& run) {
+  const RoadmapUse use{arguments.space, DescribeTest(arguments, world.model())};
+  planner::Roadmap roadmap;
+  if (!arguments.roadmap.empty()) roadmap = ReadRoadmapFor(arguments.roadmap, problem, use);
+  PlanResult result = planner::PlanPrm(world, problem.sampling, plan.start.q, plan.goal.q, oracle,
+                                       extension, {}, run, &roadmap);
+  if (!arguments.roadmap.empty()) WriteRoadmapFor(arguments.roadmap, problem, use, roadmap);
+  return result;
+}
+
 PlanResult Search(const PlanArguments& arguments, const World& world, const Problem& problem,
                   const Plan& plan, const EdgeOracle& oracle,
                   const planner::ExtensionOptions& extension) {
   ProgressLine progress(arguments.common);
   const planner::RunOptions run = MakeRun(arguments, &progress);
   if (arguments.planner == "prm") {
-    planner::Roadmap roadmap;
-    return planner::PlanPrm(world, problem.sampling, plan.start.q, plan.goal.q, oracle, extension,
-                            {}, run, &roadmap);
+    return SearchRoadmap(arguments, world, problem, plan, oracle, extension, run);
   }
   if (SearchesContacts(arguments)) {
     return planner::PlanContacts(world, problem.sampling, plan.start.q, plan.goal.q, oracle,
@@ -151,7 +170,7 @@ std::map<std::string, long> Counters(const PlanResult& result) {
  and the proofs go into the certificate. */
 std::string ConcludeEdges(const PlanArguments& arguments, const World& world, const Plan& plan) {
   const Model& model = world.model();
-  if (!DecidesWholeEdges(arguments, model)) return "sampled(" + Short(arguments.edge_step) + ")";
+  if (!DecidesWholeEdges(arguments, model)) return DescribeTest(arguments, model);
   if (arguments.space == "free") return "whole, collisions only";
   const Path path{ColumnNames(model.robot), plan.result.waypoints};
   verify::WholeAuditOptions options;
@@ -239,6 +258,7 @@ int RunPlan(const PlanArguments& arguments) {
   RequireWritable(arguments.output);
   if (!arguments.stats.empty()) RequireWritable(arguments.stats);
   if (!arguments.certificate.empty()) RequireWritable(arguments.certificate);
+  if (!arguments.roadmap.empty()) RequireWritable(arguments.roadmap);
   const Problem problem = numeric::io::ReadProblem(arguments.problem);
   Warn(arguments.common, problem.warnings);
   const World world(problem.model);
