@@ -186,6 +186,8 @@ std::string WriteAuditText(const AuditSubject& subject, const Model& model,
                      "-sided pyramids, below that of the round cones)",
                  &text);
   }
+  text << "contacts of a body with an object\n  made " << audit.contacts_made << ", broken "
+       << audit.contacts_broken << '\n';
   if (!audit.violations.empty()) text << "violations\n";
   for (const Violation& v : audit.violations) {
     text << "  edge " << v.edge << ", s = " << Short(v.s_first);
@@ -223,6 +225,7 @@ std::string WriteAuditJson(const AuditSubject& subject, const Model& model,
   json["worst"]["contact_gap_m"] = ExtremeJson(audit.contact_gap);
   json["worst"]["com_margin_m"] = ExtremeJson(audit.com_margin);
   json["worst"]["force_margin"] = ExtremeJson(audit.force_margin);
+  json["contacts"] = {{"made", audit.contacts_made}, {"broken", audit.contacts_broken}};
   json["violations"] = Json::array();
   for (const Violation& v : audit.violations) json["violations"].push_back(ViolationJson(model, v));
   const std::vector<std::string> hints = SkinHints(model, audit);

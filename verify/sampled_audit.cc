@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/margins.h"
@@ -19,14 +22,24 @@ namespace {
 using numeric::Obstruction;
 using numeric::World;
 
+/** Bodies and objects in contact. */
+using Touching = std::set<std::pair<int, int>>;
+
 // What the samples of one edge showed.
 struct EdgeAudit {
   long samples = 0;
   StageCounts collision;
   StageCounts stability;
   Extreme clearance, contact_gap, com_margin, force_margin;
+  long contacts_made = 0, contacts_broken = 0;
+  std::optional<Touching> first, last;  ///< at its first and its last sample
   std::vector<Violation> violations;
 };
+
+/** Adds to `count` how many of `these` are not among `others`. */
+void CountOthers(const Touching& these, const Touching& others, long* count) {
+  for (const auto& pair : these) *count += others.count(pair) == 0;
+}
 
 void KeepSmallest(double value, const Instant& at, const numeric::Pair& pair, Extreme* extreme) {
   if (extreme->known && !(value < extreme->value)) return;
@@ -121,6 +134,7 @@ class EdgeAuditor {
     const bool only_contact = world_.model().require == GuideRequirement::kContact;
     const numeric::LadderedStability settled = ladder_.TestStability(&result_.stability);
     const numeric::StabilityAnswer& stable = settled.answer;
+    NoteContacts();
     double gap = INFINITY;
     for (const numeric::Contact& contact : ladder_.contacts()) {
       gap = std::min(gap, contact.distance - contact.radius);
@@ -143,6 +157,17 @@ class EdgeAuditor {
     v.reason = settled.reason;
   }
 
+  void NoteContacts() {
+    Touching now;
+    for (const numeric::Contact& c : ladder_.contacts()) now.emplace(c.body, c.object);
+    if (!result_.first) result_.first = now;
+    if (result_.last) {
+      CountOthers(now, *result_.last, &result_.contacts_made);
+      CountOthers(*result_.last, now, &result_.contacts_broken);
+    }
+    result_.last = std::move(now);
+  }
+
   const World& world_;
   SampleLadder& ladder_;
   EdgeAudit result_;
@@ -154,6 +179,8 @@ void Merge(const EdgeAudit& edge, SampledAudit* all) {
   all->samples += edge.samples;
   all->collision.Add(edge.collision);
   all->stability.Add(edge.stability);
+  all->contacts_made += edge.contacts_made;
+  all->contacts_broken += edge.contacts_broken;
   const auto smallest = [](const Extreme& e, Extreme* x) {
     if (e.known) KeepSmallest(e.value, e.at, e.pair, x);
   };
@@ -210,7 +237,11 @@ SampledAudit AuditSamples(const World& world, const Path& path,
   tbb::task_arena arena(std::max(1, options.threads));
   arena.execute([&] { tbb::parallel_for(0, all.edges, audit_edge); });
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (done[i]) Merge(edges[i], &all);
+    if (!done[i]) continue;
+    Merge(edges[i], &all);
+    if (i == 0 || !done[i - 1] || !edges[i].first || !edges[i - 1].last) continue;
+    CountOthers(*edges[i].first, *edges[i - 1].last, &all.contacts_made);
+    CountOthers(*edges[i - 1].last, *edges[i].first, &all.contacts_broken);
   }
   all.done = std::move(done);
   for (std::size_t i = 1; i < path.waypoints.size(); ++i) {

@@ -76,6 +76,10 @@ struct SampledAudit {
   Extreme contact_gap;                ///< largest distance of the nearest contact (m)
   Extreme com_margin;                 ///< smallest com_m (m)
   Extreme force_margin;               ///< smallest force margin (no unit)
+  /** How often, from one sample to the next, a body came into contact with an object it did not
+   touch before, or left it. A contact that may be one counts. */
+  long contacts_made = 0;
+  long contacts_broken = 0;
   std::vector<Violation> violations;  ///< in the order of the path
 };
 

@@ -36,6 +36,8 @@ section_main_job() {
   expect 0 plan "$a1" -o "$work/guide.json" --seed 3 --stats "$work/stats.json" --certificate "$work/planned.cert"
   says "edges: proved"
   grep -q '"edges": *"proved"' "$work/guide.json" || fail "the guide does not say that its edges are proved"
+  grep -q '"least_clearance_m": [0-9.e-]*,' "$work/stats.json" || fail "the stats say nothing of the clearance"
+  grep -q '"contacts_broken": [1-9]' "$work/stats.json" || fail "nobody gets up without breaking a contact"
   ! grep -q seconds "$work/guide.json" || fail "the guide holds times"
   grep -q search_seconds "$work/stats.json" || fail "the statistics hold no times"
   # At the planner's own samples its edges hold; a finer audit may find more and says so by its code.

@@ -1,4 +1,4 @@
-// The planners end to end: rrt, prm, extension, shortcut, endpoint.
+// The planners end to end: rrt, prm, extension, endpoint.
 #include <catch2/catch.hpp>
 
 #include "cguide/exact/core/error.h"
@@ -7,7 +7,6 @@
 #include "cguide/planner/endpoint.h"
 #include "cguide/planner/prm.h"
 #include "cguide/planner/rrt.h"
-#include "cguide/planner/shortcut.h"
 #include "tests/planner/room.h"
 
 namespace cguide::planner {
@@ -135,23 +134,6 @@ TEST_CASE("an oracle that answers undecided is never taken for a yes") {
   CHECK(result.iterations == 50);
   CHECK(result.waypoints.empty());
   CHECK(result.start_nodes + result.goal_nodes == 2);
-}
-
-TEST_CASE("shortcuts keep the ends and never lengthen a guide") {
-  const Room room("chair_and_table");
-  const EdgeOracle oracle = numeric::MakeSampledOracle(room.world, {0.02});
-  PlanResult result = PlanRrt(room.world, room.problem.sampling, room.problem.start,
-                              room.problem.goal, oracle, {}, Limited(3, 1));
-  REQUIRE(result.stop == StopReason::kSolved);
-  ProjectionWorkspace workspace(room.world);
-  const ExtensionOptions extension;
-  const ExtensionContext context{room.world, oracle, extension, &workspace, &result.counters};
-  numeric::Rng rng(1);
-  const auto shorter = Shortcut(result.waypoints, {}, context, rng);
-  CheckGuide(room, shorter, Space::kGuide);
-  CHECK(Length(shorter) <= Length(result.waypoints));
-  numeric::Rng same(1);
-  CHECK(Shortcut(result.waypoints, {}, context, same) == shorter);
 }
 
 TEST_CASE("endpoints a little outside are projected, far ones are refused with a reason") {

@@ -60,6 +60,22 @@ TEST_CASE("a lift loses balance where the contact band ends") {
   CHECK(v.depth == -1);  // no contact at all: no centre of mass would do
 }
 
+TEST_CASE("contacts that are made and broken are counted, at waypoints too") {
+  const Room room("floor");
+  const Configuration down = room.problem.start, up = Raised(down, 0.2);
+  for (const double step : {0.003, 1.0}) {  // with step 1 changes show at the waypoints alone
+    const Path path = PathOf(room, {down, up, down, down});
+    for (const int threads : {1, 2}) {
+      const SampledAudit audit = Audit(room, path, step, threads);
+      CHECK(audit.contacts_broken == 2);  // the soles
+      CHECK(audit.contacts_made == 2);
+    }
+  }
+  const SampledAudit still = Audit(room, PathOf(room, {down, Raised(down, 0.01)}), 0.001);
+  CHECK(still.contacts_broken == 0);
+  CHECK(still.contacts_made == 0);
+}
+
 TEST_CASE("a dip into the floor is measured: bodies, depth, stretch") {
   const Room room("floor");
   const double gap = Audit(room, PathOf(room, {room.problem.start}), 1).clearance.value;
@@ -118,8 +134,9 @@ TEST_CASE("the text report names places, values and stages") {
   const Path path = PathOf(room, {room.problem.start, Raised(room.problem.start, -0.03)});
   const std::string text =
       WriteAuditText({"guide.json", "p", "d", "v"}, room.problem.model, Audit(room, path, 0.001));
-  for (const char* part : {"guide.json: ", "violations", "sampled(0.001)", "overlap by about",
-                           "\"floor\"", "edge 0, s = ", "by the exact twin", "undecided"}) {
+  for (const char* part :
+       {"guide.json: ", "violations", "sampled(0.001)", "overlap by about", "\"floor\"",
+        "edge 0, s = ", "contacts of a body with an object", "by the exact twin", "undecided"}) {
     CAPTURE(part);
     CHECK(text.find(part) != std::string::npos);
   }

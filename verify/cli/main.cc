@@ -68,7 +68,10 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
   c->add_option("--shortcuts", a->shortcut_rounds, "Rounds of shortcutting")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
-  c->add_option("--stats", a->stats, "File for times and counters (JSON)");
+  c->add_option("--cuts", a->corner_cuts, "Corners that are tried to be cut after that")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  c->add_option("--stats", a->stats, "File for times, counters and the guide's quality (JSON)");
   c->add_option("--roadmap", a->roadmap,
                 "With --planner prm: roadmap to use again, if the file is there, and to write");
   c->callback([a] {

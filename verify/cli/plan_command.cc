@@ -19,6 +19,7 @@
 #include "cguide/verify/cli/roadmap_option.h"
 #include "cguide/verify/cli/robust_option.h"
 #include "cguide/verify/cli/version.h"
+#include "cguide/verify/sampled_audit.h"
 #include "cguide/verify/whole_audit.h"
 
 namespace cguide::cli {
@@ -141,8 +142,9 @@ Plan MakePlan(const PlanArguments& arguments, const World& world, const Problem&
   const planner::ExtensionContext context{world, oracle, extension, &workspace,
                                           &plan.result.counters};
   const auto begin = std::chrono::steady_clock::now();
-  plan.result.waypoints = planner::Shortcut(std::move(plan.result.waypoints),
-                                            {arguments.shortcut_rounds}, context, rng);
+  plan.result.waypoints =
+      planner::Shortcut(std::move(plan.result.waypoints),
+                        {arguments.shortcut_rounds, arguments.corner_cuts}, context, rng);
   plan.shortcut_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
@@ -213,7 +215,27 @@ void WriteGuideFile(const PlanArguments& arguments, const Problem& problem, cons
   numeric::io::WriteFileAtomically(arguments.output, numeric::io::WriteGuide(guide));
 }
 
-void WriteStats(const PlanArguments& arguments, const Plan& plan) {
+/** What there is to say of a guide besides its proof: floats of samples at a step of 0.01. */
+nlohmann::ordered_json Quality(const World& world, const Plan& plan, int threads) {
+  verify::SampledAuditOptions options;
+  options.threads = threads;
+  const verify::SampledAudit audit = verify::AuditSamples(
+      world, {ColumnNames(world.model().robot), plan.result.waypoints}, options);
+  nlohmann::ordered_json quality;
+  quality["tested"] = "sampled(" + Short(options.step) + ")";
+  quality["length"] = audit.length;
+  const auto add = [&](const char* name, const verify::Extreme& extreme) {
+    if (extreme.known) quality[name] = extreme.value;
+  };
+  add("least_clearance_m", audit.clearance);
+  add("least_com_margin_m", audit.com_margin);
+  add("least_force_margin", audit.force_margin);
+  quality["contacts_made"] = audit.contacts_made;
+  quality["contacts_broken"] = audit.contacts_broken;
+  return quality;
+}
+
+void WriteStats(const PlanArguments& arguments, const World& world, const Plan& plan) {
   if (arguments.stats.empty()) return;
   nlohmann::ordered_json stats;
   stats["problem"] = arguments.problem;
@@ -225,6 +247,9 @@ void WriteStats(const PlanArguments& arguments, const Plan& plan) {
   stats["waypoints"] = plan.result.waypoints.size();
   stats["length"] = planner::Length(plan.result.waypoints);
   stats["length_before_shortcuts"] = plan.length_before;
+  if (plan.result.stop == StopReason::kSolved) {
+    stats["quality"] = Quality(world, plan, ThreadCount(arguments.common));
+  }
   for (const auto& [name, value] : Counters(plan.result)) stats["counters"][name] = value;
   numeric::io::WriteFileAtomically(arguments.stats, stats.dump(2) + "\n");
 }
@@ -265,7 +290,7 @@ int RunPlan(const PlanArguments& arguments) {
   Plan plan = MakePlan(arguments, world, problem);
   if (plan.result.stop == StopReason::kSolved) plan.edges = ConcludeEdges(arguments, world, plan);
   const int code = Conclude(arguments, problem, plan);
-  WriteStats(arguments, plan);
+  WriteStats(arguments, world, plan);
   return code;
 }
 
