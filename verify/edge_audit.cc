@@ -100,6 +100,7 @@ Verdict DecideWhole(const numeric::World& world, const Edge& edge,
   collision.max_leaves = stability.max_leaves = options.max_leaves;
   collision.pose = options.robust.pose;
   stability.robust = options.robust;
+  stability.exact_questions = 0;  // a planner has no use for a refutation that costs milliseconds
   const Verdict free = DecideEdgeCollision(world, edge, collision, &x->collision).verdict;
   if (free != Verdict::kHolds || options.space == numeric::Space::kFree) return free;
   return DecideEdgeStability(world, edge, stability, &x->stability).verdict;

@@ -248,8 +248,8 @@ Verdict Decider::TestMiddle(const Leaf& leaf) {
 // of 8 sides tell what is a matter of geometry alone.
 bool Decider::FailsExactly(const Leaf& leaf) {
   constexpr double kNarrow = 0x1p-12;
-  constexpr int kMostQuestions = 32, kBits = 106, kSides = 8;
-  if (leaf.half > kNarrow || exact_questions_ == kMostQuestions) return false;
+  constexpr int kBits = 106, kSides = 8;
+  if (leaf.half > kNarrow || exact_questions_ >= options_.exact_questions) return false;
   ++exact_questions_;
   const Model& model = world_.model();
   if (!x_.scene) x_.scene.emplace(model);

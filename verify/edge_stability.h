@@ -13,6 +13,7 @@ struct EdgeStabilityOptions {
   double shortest = 0x1p-30;  ///< as in EdgeCollisionOptions
   long max_leaves = 4000;
   double widest = 0.5;               ///< likewise
+  int exact_questions = 32;          ///< refutations at most that exact twins are asked for
   check::Robustness robust;          ///< kHolds speaks of every model in this box
   EdgeEvidence* evidence = nullptr;  ///< takes contacts and forces of a proof, where given
 };
