@@ -192,6 +192,25 @@ TEST_CASE("A waypoint beyond its limits is refused, mimic joints included") {
   CHECK(check::CheckLimits(robot, q) == robot.joints[joint].name);
 }
 
+TEST_CASE("An edge is in C_guide where its proof holds and both its ends keep their limits") {
+  Proved proved;
+  check::Certificate certificate = check::ParseCertificate(proved.text);
+  CHECK(CheckCertificate(certificate).in_guide == std::vector<bool>{true, true});
+  SECTION("without a proof") {
+    certificate.proofs.erase(certificate.proofs.begin());
+    CHECK(CheckCertificate(certificate).in_guide == std::vector<bool>{false, true});
+  }
+  SECTION("a limit of the first, the middle or the last waypoint") {
+    Robot& robot = certificate.model.robot;
+    int joint = 0;
+    while (robot.joints[joint].column != 3) ++joint;  // 0.01 rad farther at the last waypoint
+    robot.joints[joint].upper = proved.path.waypoints[1].joints[3];
+    CHECK(CheckCertificate(certificate).in_guide == std::vector<bool>{true, false});
+    robot.joints[joint].upper -= 1e-9;
+    CHECK(CheckCertificate(certificate).in_guide == std::vector<bool>{false, false});
+  }
+}
+
 TEST_CASE("The model in a certificate is compared byte for byte") {
   const Proved proved;
   const std::string begin = "\"model\": ";
