@@ -58,6 +58,7 @@ class CertifiedRun {
         tolerance_(impl->rows.determinant_error),
         counters_(*counters) {
     w_.fixed_rows.clear();
+    w_.fixed_forces.forces.clear();
   }
 
   /** Whether these rows (six) are independent, exactly. */
@@ -131,6 +132,10 @@ class CertifiedRun {
   }
   const std::array<Fixed, 6>& StoredFixed(int slot);
   const Wide<5 * E>* StoredNormal(int slot);
+  const ShearedRay* StoredSheared(int slot);
+  bool SetSheared(const Basis& basis, ShearedRay* ray);
+  int ShearedSign(const ShearedRay& ray, int slot, int i);
+  bool HoldsByRank(int i, int slot) const;
   bool HoldsThree(int begin, int end, int slot, int* first, int* last) const;
   bool HoldsPointOf(int i, int slot) const;
   bool HoldsForceOf(int i, int slot) const;
@@ -161,6 +166,8 @@ void CertifiedRun<E>::Store(int slot, const Basis& basis, const Vector6d& y, int
     rays.basis.resize(size);
     rays.orientation.resize(size);
     rays.has_fixed.resize(size);
+    rays.has_sheared.resize(size);
+    rays.sheared.resize(size);
     rays.has_exact.resize(size);
     rays.fixed.resize(size);
     rays.exact.resize(size * kWords);
@@ -169,6 +176,7 @@ void CertifiedRun<E>::Store(int slot, const Basis& basis, const Vector6d& y, int
   rays.basis[slot] = basis;
   rays.orientation[slot] = 1;
   rays.has_fixed[slot] = 0;
+  rays.has_sheared[slot] = 0;
   rays.has_exact[slot] = 0;
   const double value = y.dot(w_.rows.rows[inside]);
   const int side = value > tolerance_ ? 1 : value < -tolerance_ ? -1 : WideSide(slot, inside);

@@ -5,12 +5,12 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/certified_algorithm_internal.h"
 #include "cguide/numeric/certified_sides_internal.h"
 #include "cguide/numeric/fp_guard.h"
+#include "cguide/numeric/insertion_order_internal.h"
 
 namespace cguide::numeric {
 
@@ -141,10 +141,8 @@ void RunWith(std::span<const Generator> generators, Impl* impl, CertifiedDual* r
   for (const int i : rows.nonzero) {
     if (std::find(basis.begin(), basis.end(), i) == basis.end()) impl->order.push_back(i);
   }
-  std::mt19937_64 rng(1953);
-  auto& order = impl->order;
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng() % i]);
-  for (const int i : order) run.Add(i);
+  SortOutermostFirst(rows.rows, rows.nonzero, &impl->order);
+  for (const int i : impl->order) run.Add(i);
   const PolarGraph& graph = impl->graph;
   std::vector<std::uint64_t> zeros(result->words(), ~std::uint64_t{0});
   for (const int i : rows.nonzero) zeros[i / 64] &= ~(std::uint64_t{1} << i % 64);

@@ -41,6 +41,7 @@ struct CertifiedDual {
     std::int64_t rays = 0;           ///< born in the run
     std::int64_t fixed_normals = 0;  ///< of them, computed in fixed point of 128 bits
     std::int64_t exact_normals = 0;  ///< of them, computed in integers
+    std::int64_t sheared_signs = 0;  ///< in integers too, but half as long
     std::int64_t exact_sides = 0;    ///< sides that doubles left open
     bool reference = false;          ///< numbers too wide: the list is exact::FacetsOf's
   };

@@ -10,8 +10,16 @@
 #include "cguide/numeric/fixed_point_internal.h"
 #include "cguide/numeric/generator_rows_internal.h"
 #include "cguide/numeric/polar_graph_internal.h"
+#include "cguide/numeric/sheared_normal_internal.h"
 
 namespace cguide::numeric {
+
+/** The normal of a ray of whose rows two or more are at one point. */
+struct ShearedRay {
+  ShearedNormal<Fixed> normal;
+  std::array<std::int32_t, 5> rows;  ///< the basis, those at the point first
+  bool is_odd = false;               ///< `rows` is an odd permutation of the basis
+};
 
 /** What a run knows of its rays beside the graph. Five rows (generators, then unit vectors of
  coordinates left out, rows n, n + 1, ...) are independent and their planes hold the ray. */
@@ -19,8 +27,10 @@ struct CertifiedRays {
   std::vector<std::array<std::int32_t, 5>> basis;
   std::vector<std::int8_t> orientation;  ///< times the normal of the rows of the basis is the ray
   std::vector<std::int8_t> has_fixed;    ///< its normal in fixed point is stored
+  std::vector<std::int8_t> has_sheared;  ///< 1: its sheared normal is stored; -1: it has none
   std::vector<std::int8_t> has_exact;    ///< its integer normal is stored
   std::vector<std::array<Fixed, 6>> fixed;
+  std::vector<ShearedRay> sheared;
   std::vector<std::uint64_t> exact;  ///< 30 E words a slot
 };
 
@@ -34,6 +44,7 @@ struct CertifiedDualWorkspace::Impl {
    applied at the same point: their moments are one linear map of their forces. */
   std::vector<std::array<std::int32_t, 2>> same_point;
   std::vector<Eigen::Vector3d> points, forces;  // where there are such
+  FixedForces fixed_forces;                     // once asked for
   std::vector<int> order, common;
 };
 

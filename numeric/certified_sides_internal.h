@@ -36,6 +36,93 @@ const std::array<Fixed, 6>& CertifiedRun<E>::StoredFixed(int slot) {
   return stored;
 }
 
+/** The rows of a basis, those at one point first, and their normal; false where no two are at one
+ point. */
+template <int E>
+bool CertifiedRun<E>::SetSheared(const Basis& basis, ShearedRay* ray) {
+  int begin[5], best = -1, most = 1;
+  for (int k = 0; k < 5; ++k) {
+    if (basis[k] >= n_) return false;
+    begin[k] = w_.same_point[basis[k]][0];
+    const int same = static_cast<int>(std::count(begin, begin + k + 1, begin[k]));
+    if (same > most) {
+      most = same;
+      best = begin[k];
+    }
+  }
+  if (best < 0) return false;
+  if (w_.fixed_forces.forces.empty()) {
+    w_.fixed_forces.Fill(w_.forces, w_.rows.row_exponent, w_.points);
+  }
+  int front = 0, behind = most, passed = 0;  // each that goes first passes those that do not
+  for (int k = 0; k < 5; ++k) {
+    const bool first = begin[k] == best;
+    if (first) passed += behind - most;
+    ray->rows[first ? front++ : behind++] = basis[k];
+  }
+  ray->is_odd = passed % 2 != 0;
+  const FixedForces& all = w_.fixed_forces;
+  Triple<Fixed> u[5], d[5];
+  for (int k = 0; k < 5; ++k) {
+    u[k] = all.forces[ray->rows[k]];
+    if (k >= 2) d[k] = all.Arm(ray->rows[0], ray->rows[k]);
+  }
+  ray->normal.Set(u, d);
+  return true;
+}
+
+template <int E>
+const ShearedRay* CertifiedRun<E>::StoredSheared(int slot) {
+  std::int8_t& has = w_.rays.has_sheared[slot];
+  ShearedRay& stored = w_.rays.sheared[slot];
+  if (has == 0) {
+    has = SetSheared(w_.rays.basis[slot], &stored) ? 1 : -1;
+    counters_.fixed_normals += has > 0;
+  }
+  return has > 0 ? &stored : nullptr;
+}
+
+/** The sign of the determinant of the ray's basis and row i. */
+template <int E>
+int CertifiedRun<E>::ShearedSign(const ShearedRay& ray, int slot, int i) {
+  const FixedForces& all = w_.fixed_forces;
+  const Int128 value = ray.normal.Determinant(all.forces[i], all.Arm(ray.rows[0], i)).v;
+  int sign = value > kShearedError ? 1 : value < -kShearedError ? -1 : 0;
+  if (sign == 0) {
+    if (HoldsForceAbout(i, slot)) return 0;
+    const int words = all.Words();
+    if (words == 0) return ExactProduct(StoredNormal(slot), i).Sign();
+    ++counters_.sheared_signs;
+    sign =
+        words == 1 ? ShearedExactSign<1>(all, ray.rows, i) : ShearedExactSign<2>(all, ray.rows, i);
+  }
+  return ray.is_odd ? -sign : sign;
+}
+
+/** Whether the ray is in the planes of all forces at the point p of generator i because of its
+ basis, five independent rows that hold it: three of them are at p, so that their forces are
+ independent; or two are, and the other three at another point q. Along the ray (f, m) the force at
+ q is then nothing, f + m x q = 0, so that m is orthogonal to d x u and d x v, d = p - q, u and v
+ the two forces at p. Those are independent, as the rows are, and orthogonal to d, so that m is
+ along d and orthogonal to d x u for every u. */
+template <int E>
+bool CertifiedRun<E>::HoldsByRank(int i, int slot) const {
+  const auto [begin, end] = w_.same_point[i];
+  if (begin + 1 == end) return false;
+  int here = 0, elsewhere = -1;
+  bool is_one = true;
+  for (const int row : w_.rays.basis[slot]) {
+    if (row >= begin && row < end) {
+      ++here;
+      continue;
+    }
+    const int other = row < n_ ? w_.same_point[row][0] : row;
+    is_one = is_one && (elsewhere < 0 || elsewhere == other);
+    elsewhere = other;
+  }
+  return here >= 3 || (here == 2 && is_one);
+}
+
 /** Whether the vectors are independent, for certain. Their entries are at most one in size and came
  of at most two roundings; then a term of the determinant is rounded at most eight times, of which
  five by the formula [Higham 2002, lemma 3.1], so that the error is at most
@@ -147,7 +234,7 @@ bool CertifiedRun<E>::HoldsForceAbout(int i, int slot) const {
 // By what is known of the generators, then by ever wider numbers.
 template <int E>
 int CertifiedRun<E>::ExactSide(int slot, int i) {
-  if (HoldsForceOf(i, slot) || HoldsPointOf(i, slot)) {
+  if (HoldsByRank(i, slot) || HoldsForceOf(i, slot) || HoldsPointOf(i, slot)) {
     ++counters_.exact_sides;
     return 0;
   }
@@ -157,6 +244,8 @@ int CertifiedRun<E>::ExactSide(int slot, int i) {
 template <int E>
 int CertifiedRun<E>::WideSide(int slot, int i) {
   ++counters_.exact_sides;
+  const ShearedRay* const sheared = i < n_ ? StoredSheared(slot) : nullptr;
+  if (sheared != nullptr) return w_.rays.orientation[slot] * ShearedSign(*sheared, slot, i);
   int sign = FixedSign(StoredFixed(slot), i);
   if (sign == 0 && HoldsForceAbout(i, slot)) return 0;
   if (sign == 0) sign = ExactProduct(StoredNormal(slot), i).Sign();

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "cguide/numeric/dual_kernels_internal.h"
 #include "cguide/numeric/fp_guard.h"
+#include "cguide/numeric/insertion_order_internal.h"
 #include "cguide/numeric/polar_graph_internal.h"
 
 namespace cguide::numeric {
@@ -145,8 +145,7 @@ void DualDescription(std::span<const Vector6d> generators, const DualOptions& op
   for (const int i : w->nonzero) {
     if (std::find(span.basis, end, i) == end) w->order.push_back(i);
   }
-  std::mt19937_64 rng(1953);
-  for (std::size_t i = w->order.size(); i > 1; --i) std::swap(w->order[i - 1], w->order[rng() % i]);
+  SortOutermostFirst(w->units, w->nonzero, &w->order);
   for (const int i : w->order) AddHalfspace(i, options.tolerance, w);
   for (int s = 0; s < w->graph.num_slots(); ++s) {
     if (!w->graph.alive(s)) continue;
