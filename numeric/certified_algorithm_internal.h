@@ -13,7 +13,9 @@
 #include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/certified_facets.h"
 #include "cguide/numeric/certified_run_internal.h"
+#include "cguide/numeric/float_normals_internal.h"
 #include "cguide/numeric/minors_internal.h"
+#include "cguide/numeric/modular_basis_internal.h"
 
 // The double description method of CertifiedFacets, every side decided for certain.
 namespace cguide::numeric {
@@ -58,7 +60,7 @@ class CertifiedRun {
         tolerance_(impl->rows.determinant_error),
         counters_(*counters) {
     w_.fixed_rows.clear();
-    w_.fixed_forces.forces.clear();
+    w_.fixed_forces.Clear();
   }
 
   /** Whether these rows (six) are independent, exactly. */
@@ -78,6 +80,7 @@ class CertifiedRun {
     w_.graph.Reset(n_, rank_);
     w_.table.Reset();
     w_.graph.StartSimplex(basis);
+    w_.table.Grow(w_.graph.num_slots());
     for (int k = 0; k < rank_; ++k) {
       Basis five;
       for (int j = 0, m = 0; j < rank_; ++j) {
@@ -143,11 +146,13 @@ class CertifiedRun {
   int ExactSide(int slot, int i);
   int WideSide(int slot, int i);
   void Store(int slot, const Basis& basis, const Vector6d& y, int inside);
-  bool TryBasis(const Basis& basis, Vector6d* y) const;
-  Basis FindBasis(int p, int q, int i, Vector6d* y);
+  bool FromParent(const Birth& birth, int i, Basis* basis) const;
+  void FillCommon(const Birth& birth);
+  void ImproveBasis(int i, bool independent, Basis* basis, Vector6d* y);
   Basis GreedyBasis(std::span<const int> common, int i) const;
   Basis ExactBasis(std::span<const int> common, int i) const;
-  void Bear(int slot, int p, int q, int i);
+  void BearAll(int i);
+  void Bear(const Birth& birth, const Basis& basis, const Vector6d& y);
 
   CertifiedDualWorkspace::Impl& w_;
   const std::vector<Wide<E>> integers_;
@@ -182,16 +187,7 @@ void CertifiedRun<E>::Store(int slot, const Basis& basis, const Vector6d& y, int
   const int side = value > tolerance_ ? 1 : value < -tolerance_ ? -1 : WideSide(slot, inside);
   assert(side != 0);
   if (side > 0) rays.orientation[slot] = -1;
-  w_.table.Grow(w_.graph.num_slots());
   w_.table.Set(slot, side > 0 ? Vector6d(-y) : y);
-}
-
-/** Whether the rows are independent for certain; their normal. Each of its entries is the
- determinant of the rows and a unit vector. */
-template <int E>
-bool CertifiedRun<E>::TryBasis(const Basis& basis, Vector6d* y) const {
-  *y = FloatNormal(basis);
-  return Largest(*y) > tolerance_;
 }
 
 // Gram-Schmidt with the farthest next; may end in dependent rows.
@@ -223,86 +219,95 @@ Basis CertifiedRun<E>::GreedyBasis(std::span<const int> common, int i) const {
   return basis;
 }
 
-// Independent rows in exact arithmetic; there are five.
+/** Five independent rows, i and others of the common ones, of which there are four: modulo a prime,
+ and if that divides all minors, over the rationals. */
 template <int E>
 Basis CertifiedRun<E>::ExactBasis(std::span<const int> common, int i) const {
   Basis basis;
   int taken = 0;
-  std::vector<VectorXq> chosen;
-  const auto offer = [&](int row) {
-    VectorXq v(6);
-    for (int k = 0; k < 6; ++k) v[k] = ToInteger(Row(row)[k]);
-    chosen.push_back(v);
-    if (exact::Rank(chosen) == static_cast<int>(chosen.size())) {
-      basis[taken++] = row;
-    } else {
-      chosen.pop_back();
-    }
+  const auto offer_all = [&](const auto& is_new) {
+    taken = 0;
+    const auto offer = [&](int row) {
+      if (taken < 5 && is_new(Row(row))) basis[taken++] = row;
+    };
+    offer(i);
+    for (int j = rank_ - 1; j < 5; ++j) offer(n_ + j - (rank_ - 1));
+    for (const int row : common) offer(row);
   };
-  offer(i);
-  for (int j = rank_ - 1; j < 5; ++j) offer(n_ + j - (rank_ - 1));
-  for (std::size_t k = 0; k < common.size() && taken < 5; ++k) offer(common[k]);
+  ModularBasis modular;
+  offer_all([&](const Wide<E>* row) { return modular.Take(row); });
+  if (taken == 5) return basis;
+  std::vector<VectorXq> chosen;
+  offer_all([&](const Wide<E>* row) {
+    VectorXq v(6);
+    for (int k = 0; k < 6; ++k) v[k] = ToInteger(row[k]);
+    chosen.push_back(v);
+    if (exact::Rank(chosen) == static_cast<int>(chosen.size())) return true;
+    chosen.pop_back();
+    return false;
+  });
   assert(taken == 5);
   return basis;
 }
 
-// Five independent rows among those common to p and q, and i.
+/** The basis of a parent that has four rows common to both, with row i for the fifth: independent,
+ as four independent rows stay so and row i is off the face. False where there is none. */
 template <int E>
-Basis CertifiedRun<E>::FindBasis(int p, int q, int i, Vector6d* y) {
-  constexpr double kGood = 1e-5;  // no verdict depends on it
-  const PolarGraph& graph = w_.graph;
-  std::vector<int>& common = w_.common;
-  common.clear();
-  const auto a = graph.planes(p), b = graph.planes(q);
-  for (std::size_t word = 0; word < a.size(); ++word) {
-    for (std::uint64_t bits = a[word] & b[word]; bits != 0; bits &= bits - 1) {
-      common.push_back(static_cast<int>(64 * word) + std::countr_zero(bits));
-    }
-  }
-  bool certain = false;
-  Basis basis;
-  for (const int parent : {p, q}) {
-    int kept = 0, lost = -1;
-    const int other = parent == p ? q : p;
-    basis = w_.rays.basis[parent];
+bool CertifiedRun<E>::FromParent(const Birth& birth, int i, Basis* basis) const {
+  for (const int parent : {birth.p, birth.q}) {
+    const int other = parent == birth.p ? birth.q : birth.p;
+    *basis = w_.rays.basis[parent];
+    int kept = 0, lost = 0;
     for (int k = 0; k < 5; ++k) {
-      if (basis[k] >= n_ || graph.Holds(basis[k], other)) {
+      if ((*basis)[k] >= n_ || w_.graph.Holds((*basis)[k], other)) {
         ++kept;
       } else {
         lost = k;
       }
     }
-    if (kept != 4) continue;
-    basis[lost] = i;
-    certain = TryBasis(basis, y);
-    if (certain && Largest(*y) > kGood) return basis;
-    // Four independent rows stay so, and row i is off the face: independent for certain, though
-    // the doubles cannot see it.
-    certain = true;
-    if (static_cast<int>(common.size()) == rank_ - 2) return basis;  // there is no other
-    break;
+    (*basis)[lost] = i;
+    if (kept == 4) return true;
   }
-  const Basis greedy = GreedyBasis(common, i);
-  Vector6d z;
-  if (TryBasis(greedy, &z) && (!certain || Largest(z) > Largest(*y))) {
-    *y = z;
-    return greedy;
-  }
-  if (certain) return basis;
-  basis = ExactBasis(common, i);
-  *y = FloatNormal(basis);
-  return basis;
+  return false;
 }
 
 template <int E>
-void CertifiedRun<E>::Bear(int slot, int p, int q, int i) {
-  Vector6d y;
-  const Basis basis = FindBasis(p, q, i, &y);
+void CertifiedRun<E>::FillCommon(const Birth& birth) {
+  w_.common.clear();
+  const auto a = w_.graph.planes(birth.p), b = w_.graph.planes(birth.q);
+  for (std::size_t word = 0; word < a.size(); ++word) {
+    for (std::uint64_t bits = a[word] & b[word]; bits != 0; bits &= bits - 1) {
+      w_.common.push_back(static_cast<int>(64 * word) + std::countr_zero(bits));
+    }
+  }
+}
+
+/** Looks for better rows among the common ones than `basis`, which may be dependent unless said
+ otherwise; y is their normal. */
+template <int E>
+void CertifiedRun<E>::ImproveBasis(int i, bool independent, Basis* basis, Vector6d* y) {
+  const Basis greedy = GreedyBasis(w_.common, i);
+  const Vector6d z = FloatNormal(greedy);
+  if (independent) {
+    // The doubles need not see that they are: others for which they do are better.
+    if (Largest(z) <= tolerance_ || Largest(z) <= Largest(*y)) return;
+  } else if (Largest(z) <= tolerance_) {
+    *basis = ExactBasis(w_.common, i);
+    *y = FloatNormal(*basis);
+    return;
+  }
+  *basis = greedy;
+  *y = z;
+}
+
+/** Stores a ray with its basis and the normal of that. */
+template <int E>
+void CertifiedRun<E>::Bear(const Birth& birth, const Basis& basis, const Vector6d& y) {
   // Planes that hold one parent only; the ray is strictly inside all of them. The clearest.
   int inside = -1;
   double clearest = -1;
-  for (const int parent : {p, q}) {
-    const int other = parent == p ? q : p;
+  for (const int parent : {birth.p, birth.q}) {
+    const int other = parent == birth.p ? birth.q : birth.p;
     for (const int row : w_.rays.basis[parent]) {
       if (row >= n_ || w_.graph.Holds(row, other)) continue;
       const double size = std::abs(y.dot(w_.rows.rows[row]));
@@ -312,7 +317,31 @@ void CertifiedRun<E>::Bear(int slot, int p, int q, int i) {
       }
     }
   }
-  Store(slot, basis, y, inside);
+  Store(birth.slot, basis, y, inside);
+}
+
+/** The rays born on plane i: each has five independent rows among those common to its parents, and
+ i. */
+template <int E>
+void CertifiedRun<E>::BearAll(int i) {
+  constexpr double kGood = 1e-5;  // no verdict depends on it
+  const std::size_t count = w_.births.size();
+  w_.bases.resize(count);
+  w_.normals.resize(count);
+  w_.from_parent.resize(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    w_.from_parent[k] = FromParent(w_.births[k], i, &w_.bases[k]);
+  }
+  FloatNormals(w_.rows.rows, w_.bases, w_.normals.data());
+  for (std::size_t k = 0; k < count; ++k) {
+    const bool independent = w_.from_parent[k];
+    if (!independent || Largest(w_.normals[k]) <= std::max(kGood, tolerance_)) {
+      FillCommon(w_.births[k]);
+      const bool is_only = independent && static_cast<int>(w_.common.size()) == rank_ - 2;
+      if (!is_only) ImproveBasis(i, independent, &w_.bases[k], &w_.normals[k]);
+    }
+    Bear(w_.births[k], w_.bases[k], w_.normals[k]);
+  }
 }
 
 template <int E>
@@ -332,7 +361,10 @@ void CertifiedRun<E>::Add(int i) {
       if (side == 0) on_plane.push_back(s);
     }
   }
-  graph.Cut(i, [&](int slot, int p, int q) { Bear(slot, p, q, i); });
+  w_.births.clear();
+  graph.Cut(i, [&](int slot, int p, int q) { w_.births.push_back({slot, p, q}); });
+  w_.table.Grow(graph.num_slots());
+  BearAll(i);
   for (const int s : outside) w_.table.Set(s, Vector6d::Zero());
 }
 

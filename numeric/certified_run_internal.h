@@ -34,6 +34,11 @@ struct CertifiedRays {
   std::vector<std::uint64_t> exact;  ///< 30 E words a slot
 };
 
+/** A ray born on the face of p, outside of the plane, and q. */
+struct Birth {
+  int slot, p, q;
+};
+
 struct CertifiedDualWorkspace::Impl {
   PolarGraph graph;
   RayTable table;
@@ -46,6 +51,11 @@ struct CertifiedDualWorkspace::Impl {
   std::vector<Eigen::Vector3d> points, forces;  // where there are such
   FixedForces fixed_forces;                     // once asked for
   std::vector<int> order, common;
+  // Of the rays born on the plane being added.
+  std::vector<Birth> births;
+  std::vector<std::array<std::int32_t, 5>> bases;
+  std::vector<Vector6d> normals;
+  std::vector<std::int8_t> from_parent;  // whether the basis is a parent's with one row replaced
 };
 
 }  // namespace cguide::numeric

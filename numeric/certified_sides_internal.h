@@ -51,9 +51,8 @@ bool CertifiedRun<E>::SetSheared(const Basis& basis, ShearedRay* ray) {
     }
   }
   if (best < 0) return false;
-  if (w_.fixed_forces.forces.empty()) {
-    w_.fixed_forces.Fill(w_.forces, w_.rows.row_exponent, w_.points);
-  }
+  FixedForces& all = w_.fixed_forces;
+  if (all.empty()) all.Fill(w_.forces, w_.rows.row_exponent, w_.points, w_.same_point);
   int front = 0, behind = most, passed = 0;  // each that goes first passes those that do not
   for (int k = 0; k < 5; ++k) {
     const bool first = begin[k] == best;
@@ -61,13 +60,11 @@ bool CertifiedRun<E>::SetSheared(const Basis& basis, ShearedRay* ray) {
     ray->rows[first ? front++ : behind++] = basis[k];
   }
   ray->is_odd = passed % 2 != 0;
-  const FixedForces& all = w_.fixed_forces;
-  Triple<Fixed> u[5], d[5];
-  for (int k = 0; k < 5; ++k) {
-    u[k] = all.forces[ray->rows[k]];
-    if (k >= 2) d[k] = all.Arm(ray->rows[0], ray->rows[k]);
-  }
-  ray->normal.Set(u, d);
+  const auto& r = ray->rows;
+  const auto moment = [&](int k) { return &all.Moment(r[0], r[k]); };
+  ray->normal.Set(
+      {&all.force(r[0]), &all.force(r[1]), &all.force(r[2]), &all.force(r[3]), &all.force(r[4])},
+      {moment(2), moment(3), moment(4)}, most > 2);
   return true;
 }
 
@@ -85,16 +82,15 @@ const ShearedRay* CertifiedRun<E>::StoredSheared(int slot) {
 /** The sign of the determinant of the ray's basis and row i. */
 template <int E>
 int CertifiedRun<E>::ShearedSign(const ShearedRay& ray, int slot, int i) {
-  const FixedForces& all = w_.fixed_forces;
-  const Int128 value = ray.normal.Determinant(all.forces[i], all.Arm(ray.rows[0], i)).v;
+  FixedForces& all = w_.fixed_forces;
+  const Int128 value = ray.normal.Determinant(all.force(i), all.Moment(ray.rows[0], i)).v;
   int sign = value > kShearedError ? 1 : value < -kShearedError ? -1 : 0;
   if (sign == 0) {
     if (HoldsForceAbout(i, slot)) return 0;
     const int words = all.Words();
     if (words == 0) return ExactProduct(StoredNormal(slot), i).Sign();
     ++counters_.sheared_signs;
-    sign =
-        words == 1 ? ShearedExactSign<1>(all, ray.rows, i) : ShearedExactSign<2>(all, ray.rows, i);
+    sign = words == 1 ? all.ExactSign<1>(ray.rows, i) : all.ExactSign<2>(ray.rows, i);
   }
   return ray.is_odd ? -sign : sign;
 }

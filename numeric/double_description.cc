@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,7 @@ struct DualWorkspace::Impl {
   RayTable rays;
   std::vector<Vector6d> units;  // generators, normalised; then their coordinates in the span
   std::vector<int> nonzero, order;
+  std::vector<std::array<int, 3>> births;  // on the plane being added: slot, parents p and q
 };
 
 DualWorkspace::DualWorkspace() : impl_(std::make_unique<Impl>()) {}
@@ -119,10 +121,12 @@ void AddHalfspace(int i, double tolerance, Impl* w) {
       on_plane.push_back(s);
     }
   }
-  graph.Cut(i, [&](int slot, int p, int q) {
-    rays.Grow(graph.num_slots());
+  w->births.clear();
+  graph.Cut(i, [&](int slot, int p, int q) { w->births.push_back({slot, p, q}); });
+  rays.Grow(graph.num_slots());
+  for (const auto& [slot, p, q] : w->births) {
     rays.Set(slot, (rays.value(p) * rays.Get(q) - rays.value(q) * rays.Get(p)).normalized());
-  });
+  }
   for (const int s : outside) rays.Set(s, Vector6d::Zero());
 }
 

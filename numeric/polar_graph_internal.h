@@ -41,8 +41,8 @@ class PolarGraph {
   Sides* sides() { return &sides_; }
 
   /** Adds a half-space. `born(slot, p, q)` is called for every new ray, which lies on the face of
-   p (outside) and q (inside), whose slots stay intact until Cut returns; `grow(n)` before the
-   number of slots rises to n. Afterwards rays outside are gone. */
+   p (outside) and q (inside). Afterwards rays outside are gone; the planes of their slots can be
+   read until the next Cut. */
   template <typename Born>
   void Cut(int plane, const Born& born);
 

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
 #include "cguide/numeric/sheared_normal_internal.h"
 
 namespace cguide::numeric {
@@ -22,24 +26,68 @@ int TrailingZeros(UInt128 x) {
 }  // namespace
 
 void FixedForces::Fill(std::span<const Eigen::Vector3d> u, std::span<const int> exponent,
-                       std::span<const Eigen::Vector3d> p) {
+                       std::span<const Eigen::Vector3d> p,
+                       std::span<const std::array<std::int32_t, 2>> group) {
+  const std::size_t n = u.size();
   double largest = 0;
   for (const Eigen::Vector3d& x : p) largest = std::max(largest, x.cwiseAbs().maxCoeff());
   const int shift = largest == 0 ? 0 : 124 - std::ilogb(largest);
-  forces.resize(u.size());
-  points.resize(u.size());
+  forces_.resize(n);
+  points_.resize(n);
+  point_of_.resize(n);
   bool exact_forces = true, exact_points = true;
   UInt128 force_bits = 0, point_bits = 0;
-  for (std::size_t i = 0; i < u.size(); ++i) {
+  int num_points = 0;
+  for (std::size_t i = 0; i < n; ++i) {
     for (int k = 0; k < 3; ++k) {
-      forces[i][k] = Scaled(u[i][k], 125 - exponent[i], &exact_forces);
-      points[i][k] = Scaled(p[i][k], shift, &exact_points);
-      force_bits |= static_cast<UInt128>(forces[i][k].v);
-      point_bits |= static_cast<UInt128>(points[i][k].v);
+      forces_[i][k] = Scaled(u[i][k], 125 - exponent[i], &exact_forces);
+      points_[i][k] = Scaled(p[i][k], shift, &exact_points);
+      force_bits |= static_cast<UInt128>(forces_[i][k].v);
+      point_bits |= static_cast<UInt128>(points_[i][k].v);
     }
+    num_points += group[i][0] == static_cast<std::int32_t>(i);
+    point_of_[i] = num_points - 1;
   }
-  force_zeros = exact_forces ? TrailingZeros(force_bits) : -1;
-  point_zeros = exact_points ? TrailingZeros(point_bits) : -1;
+  force_zeros_ = exact_forces ? TrailingZeros(force_bits) : -1;
+  point_zeros_ = exact_points ? TrailingZeros(point_bits) : -1;
+  constexpr std::size_t kMoments = 4096;  // 200 kB
+  const std::size_t size = n * static_cast<std::size_t>(num_points);
+  has_moment_.assign(size <= kMoments ? size : 0, 0);
+  moments_.resize(std::max(moments_.size(), has_moment_.size()));
 }
+
+const Triple<Fixed>& FixedForces::Moment(int about, int i) {
+  if (has_moment_.empty()) {
+    next_ = (next_ + 1) % 4;
+    return scratch_[next_] = CrossOf(Arm(about, i), forces_[i]);
+  }
+  const std::size_t k = static_cast<std::size_t>(point_of_[about]) * forces_.size() + i;
+  if (!has_moment_[k]) {
+    has_moment_[k] = 1;
+    moments_[k] = CrossOf(Arm(about, i), forces_[i]);
+  }
+  return moments_[k];
+}
+
+template <int N>
+int FixedForces::ExactSign(const std::array<std::int32_t, 5>& rows, int x) const {
+  const auto whole = [](const Triple<Fixed>& a, int zeros) {
+    return Triple<Wide<N>>{Shifted<N>(a[0].v >> zeros, 0), Shifted<N>(a[1].v >> zeros, 0),
+                           Shifted<N>(a[2].v >> zeros, 0)};
+  };
+  const auto force = [&](int i) { return whole(forces_[i], force_zeros_); };
+  const auto moment = [&](int i) {
+    return CrossOf(whole(Arm(rows[0], i), point_zeros_), force(i));
+  };
+  const Triple<Wide<N>> u[5] = {force(rows[0]), force(rows[1]), force(rows[2]), force(rows[3]),
+                                force(rows[4])};
+  const Triple<Wide<2 * N>> M[3] = {moment(rows[2]), moment(rows[3]), moment(rows[4])};
+  ShearedNormal<Wide<N>> normal;
+  normal.Set({&u[0], &u[1], &u[2], &u[3], &u[4]}, {&M[0], &M[1], &M[2]},
+             point_of_[rows[2]] == point_of_[rows[0]]);
+  return normal.Determinant(force(x), moment(x)).Sign();
+}
+template int FixedForces::ExactSign<1>(const std::array<std::int32_t, 5>&, int) const;
+template int FixedForces::ExactSign<2>(const std::array<std::int32_t, 5>&, int) const;
 
 }  // namespace cguide::numeric

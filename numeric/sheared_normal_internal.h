@@ -38,8 +38,8 @@ auto CrossOf(const Triple<A>& a, const Triple<B>& b) {
   return result;
 }
 
-/** The determinant of forces u_0, u_1 at p, of u_2, u_3, u_4 at p + d_2, p + d_3, p + d_4 and of a
- sixth, as a function of that; d_2 may be nothing.
+/** The determinant of forces u_0, u_1 at a point p, of u_2, u_3, u_4 at p + d_2, p + d_3, p + d_4
+ and of a sixth, as a function of that.
 
  Moments are taken about p, M = d x u, which leaves determinants as they are. The first two rows are
  then (u, 0), and by Laplace's expansion along them the determinant is that of the four rows (n.u,
@@ -56,20 +56,17 @@ struct ShearedNormal {
   decltype(Area{} * Moment{}) alpha;
   Triple<decltype(Area{} * Scalar{})> m;
 
-  void Set(const Triple<T> (&u)[5], const Triple<T> (&d)[5]) {
-    n = CrossOf(u[0], u[1]);
-    const Triple<Moment> M3 = CrossOf(d[3], u[3]), M4 = CrossOf(d[4], u[4]);
-    const Triple<Area> M34 = CrossOf(M3, M4);
-    const Scalar s2 = Dot(n, u[2]);
+  /** M[k] is that of force 2 + k; `three`: that force 2 is at p as well, M_2 = 0. */
+  void Set(const Triple<T>* const (&u)[5], const Triple<Moment>* const (&M)[3], bool three) {
+    n = CrossOf(*u[0], *u[1]);
+    const Triple<Area> M34 = CrossOf(*M[1], *M[2]);
+    const Scalar s2 = Dot(n, *u[2]);
     for (int k = 0; k < 3; ++k) m[k] = M34[k] * s2;
-    const bool is_at_p =
-        std::all_of(d[2].begin(), d[2].end(), [](const T& x) { return IsZero(x); });
     alpha = {};
-    if (is_at_p) return;
-    const Triple<Moment> M2 = CrossOf(d[2], u[2]);
-    alpha = Dot(M34, M2);
-    const Scalar s3 = Dot(n, u[3]), s4 = Dot(n, u[4]);
-    const Triple<Area> M42 = CrossOf(M4, M2), M23 = CrossOf(M2, M3);
+    if (three) return;
+    alpha = Dot(M34, *M[0]);
+    const Scalar s3 = Dot(n, *u[3]), s4 = Dot(n, *u[4]);
+    const Triple<Area> M42 = CrossOf(*M[2], *M[0]), M23 = CrossOf(*M[0], *M[1]);
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) {
       m[k] += M42[k] * s3;
@@ -77,18 +74,12 @@ struct ShearedNormal {
     }
   }
 
-  auto Determinant(const Triple<T>& u, const Triple<T>& d) const {
-    auto value = Dot(m, CrossOf(d, u));
+  auto Determinant(const Triple<T>& u, const Triple<Moment>& M) const {
+    auto value = Dot(m, M);
     value -= alpha * Dot(n, u);
     return value;
   }
 };
-
-inline bool IsZero(const Fixed& x) { return x.v == 0; }
-template <int N>
-bool IsZero(const Wide<N>& x) {
-  return x.IsZero();
-}
 
 /** What the determinant in fixed point differs by from the exact one (of the scaled forces and
  points, in units 2^1024 times theirs) at most. With M = 2^128, and e, b the error and size of a
@@ -107,54 +98,51 @@ bool IsZero(const Wide<N>& x) {
  All factors are below 2^126 and all sums below 2^127. */
 constexpr int kShearedError = 15;
 
-/** Forces and points in two scales of their own, rounded down. */
-struct FixedForces {
-  std::vector<Triple<Fixed>> forces;  ///< of size at most 2^125
-  std::vector<Triple<Fixed>> points;  ///< likewise
-  /** All numbers are exact and multiples of 2^force_zeros, 2^point_zeros; else negative. */
-  int force_zeros = -1, point_zeros = -1;
-
-  /** Force i is scaled by 2^-exponent[i], which leaves it below one. */
+/** Forces and points in two scales of their own, rounded down; moments of forces about points. */
+class FixedForces {
+ public:
+  void Clear() { forces_.clear(); }
+  bool empty() const { return forces_.empty(); }
+  /** Force i is scaled by 2^-exponent[i], which leaves it below one. Generators of one point stand
+   side by side, group[i] is the first of them. */
   void Fill(std::span<const Eigen::Vector3d> u, std::span<const int> exponent,
-            std::span<const Eigen::Vector3d> p);
+            std::span<const Eigen::Vector3d> p, std::span<const std::array<std::int32_t, 2>> group);
 
+  const Triple<Fixed>& force(int i) const { return forces_[i]; }
+  /** Of force i about the point of force `about`, computed once where there is room to keep it. */
+  const Triple<Fixed>& Moment(int about, int i);
+
+  /** Words that an integer takes with zeros common to all left out, so that ShearedNormal does not
+   overflow: forces and arms are below b = 2^(64 N - 2) in size, as they are below 2^126 in fixed
+   point; then n and M are at most 2 b^2, s is at most 6 b^3, M x M at most 8 b^4, alpha at most
+   48 b^6, m at most 144 b^7, and the determinant at most 864 b^9 + 288 b^9 < 2^(576 N - 18 + 11):
+   each is below half the range of its 2, 3, 4, 6, 7, 9 times N words. Zero where N is not 1 or 2,
+   or where numbers were rounded. */
+  int Words() const {
+    const int zeros = std::min(force_zeros_, point_zeros_);
+    return zeros >= 64 ? 1 : zeros >= 0 ? 2 : 0;
+  }
+  /** The sign of the exact determinant of rows 0 .. 4, of which 0 and 1 are at one point, and x; N
+   is Words(). */
+  template <int N>
+  int ExactSign(const std::array<std::int32_t, 5>& rows, int x) const;
+
+ private:
   Triple<Fixed> Arm(int from, int to) const {
-    Triple<Fixed> arm = points[to];
-    for (int k = 0; k < 3; ++k) arm[k] -= points[from][k];
+    Triple<Fixed> arm = points_[to];
+    for (int k = 0; k < 3; ++k) arm[k] -= points_[from][k];
     return arm;
   }
 
-  /** Words that an integer takes with the zeros left out, so that ShearedNormal does not overflow:
-   forces and arms are below b = 2^(64 N - 2) in size, as they are below 2^126 in fixed point; then
-   n and M are at most 2 b^2, s is at most 6 b^3, M x M at most 8 b^4, alpha at most 48 b^6, m at
-   most 144 b^7, and the determinant at most 864 b^9 + 288 b^9 < 2^(576 N - 18 + 11): each is below
-   half the range of its 2, 3, 4, 6, 7, 9 times N words. Zero where there is no N <= 2. */
-  int Words() const {
-    const int zeros = std::min(force_zeros, point_zeros);
-    return zeros >= 64 ? 1 : zeros >= 0 ? 2 : 0;
-  }
+  std::vector<Triple<Fixed>> forces_;  // of size at most 2^125
+  std::vector<Triple<Fixed>> points_;  // likewise
+  // All numbers are exact and multiples of these powers of two; else negative.
+  int force_zeros_ = -1, point_zeros_ = -1;
+  std::vector<std::int32_t> point_of_;  // number of its point
+  std::vector<Triple<Fixed>> moments_;  // of force i about point k at k n + i; empty if too many
+  std::vector<std::uint8_t> has_moment_;
+  Triple<Fixed> scratch_[4];  // instead
+  int next_ = 0;
 };
-
-/** The sign of the exact determinant of rows 0 .. 4, of which 0 and 1 are at one point, and x; N is
- all.Words(). */
-template <int N>
-int ShearedExactSign(const FixedForces& all, const std::array<std::int32_t, 5>& rows, int x) {
-  using Number = Wide<N>;
-  const auto whole = [](const Triple<Fixed>& a, int zeros) {
-    Triple<Number> result;
-    for (int k = 0; k < 3; ++k) result[k] = Shifted<N>(a[k].v >> zeros, 0);
-    return result;
-  };
-  const auto force = [&](int i) { return whole(all.forces[i], all.force_zeros); };
-  const auto arm = [&](int i) { return whole(all.Arm(rows[0], i), all.point_zeros); };
-  Triple<Number> u[5], d[5];
-  for (int k = 0; k < 5; ++k) {
-    u[k] = force(rows[k]);
-    if (k >= 2) d[k] = arm(rows[k]);
-  }
-  ShearedNormal<Number> normal;
-  normal.Set(u, d);
-  return normal.Determinant(force(x), arm(x)).Sign();
-}
 
 }  // namespace cguide::numeric
