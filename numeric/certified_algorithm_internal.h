@@ -5,6 +5,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
@@ -13,7 +14,6 @@
 #include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/certified_facets.h"
 #include "cguide/numeric/certified_run_internal.h"
-#include "cguide/numeric/float_normals_internal.h"
 #include "cguide/numeric/minors_internal.h"
 #include "cguide/numeric/modular_basis_internal.h"
 
@@ -21,6 +21,23 @@
 namespace cguide::numeric {
 
 using Basis = std::array<std::int32_t, 5>;
+
+/** The integers of the generators, then of unit vectors, made once one is asked for. */
+template <int E>
+class WideRows {
+ public:
+  explicit WideRows(std::function<void(std::vector<Wide<E>>*)> fill) : fill_(std::move(fill)) {}
+  const Wide<E>* Row(int i) {
+    if (entries_.empty()) fill_(&entries_);
+    return entries_.data() + 6 * static_cast<std::size_t>(i);
+  }
+
+  void Clear() { entries_.clear(); }
+
+ private:
+  std::function<void(std::vector<Wide<E>>*)> fill_;
+  std::vector<Wide<E>> entries_;
+};
 
 inline double Largest(const Vector6d& y) { return y.cwiseAbs().maxCoeff(); }
 
@@ -51,10 +68,10 @@ inline Vector6d Unit(const double* fraction, const int* exponent) {
 template <int E>
 class CertifiedRun {
  public:
-  CertifiedRun(CertifiedDualWorkspace::Impl* impl, std::vector<Wide<E>> integers, int n, int rank,
+  CertifiedRun(CertifiedDualWorkspace::Impl* impl, WideRows<E>* integers, int n, int rank,
                CertifiedDual::Counters* counters)
       : w_(*impl),
-        integers_(std::move(integers)),
+        integers_(*integers),
         n_(n),
         rank_(rank),
         tolerance_(impl->rows.determinant_error),
@@ -80,14 +97,15 @@ class CertifiedRun {
     w_.graph.Reset(n_, rank_);
     w_.table.Reset();
     w_.graph.StartSimplex(basis);
-    w_.table.Grow(w_.graph.num_slots());
+    Grow(w_.graph.num_slots());
+    counters_.rays += rank_;
     for (int k = 0; k < rank_; ++k) {
       Basis five;
       for (int j = 0, m = 0; j < rank_; ++j) {
         if (j != k) five[m++] = basis[j];
       }
       for (int j = rank_ - 1; j < 5; ++j) five[j] = n_ + j - (rank_ - 1);
-      Store(k, five, FloatNormal(five), basis[k]);
+      Orient(k, five, FloatNormal(five), basis[k]);
     }
   }
 
@@ -98,7 +116,7 @@ class CertifiedRun {
  private:
   static constexpr int kWords = 30 * E;
 
-  const Wide<E>* Row(int i) const { return integers_.data() + 6 * static_cast<std::size_t>(i); }
+  const Wide<E>* Row(int i) const { return integers_.Row(i); }
   Vector6d FloatNormal(const Basis& b) const {
     Vector6d y;
     const auto& rows = w_.rows.rows;
@@ -139,55 +157,73 @@ class CertifiedRun {
   bool SetSheared(const Basis& basis, ShearedRay* ray);
   int ShearedSign(const ShearedRay& ray, int slot, int i);
   bool HoldsByRank(int i, int slot) const;
+  int NumHeld(int begin, int end, int slot) const;
   bool HoldsThree(int begin, int end, int slot, int* first, int* last) const;
   bool HoldsPointOf(int i, int slot) const;
   bool HoldsForceOf(int i, int slot) const;
   bool HoldsForceAbout(int i, int slot) const;
   int ExactSide(int slot, int i);
   int WideSide(int slot, int i);
-  void Store(int slot, const Basis& basis, const Vector6d& y, int inside);
-  bool FromParent(const Birth& birth, int i, Basis* basis) const;
+  void Grow(int n);
+  void Store(int slot, const Basis& basis, const Vector6d& y, int orientation);
+  void Orient(int slot, const Basis& basis, const Vector6d& y, int inside);
+  bool FromParent(const Birth& birth, int i, std::array<int, 6>* rows) const;
+  int Inside(const Birth& birth, const Vector6d& y) const;
   void FillCommon(const Birth& birth);
   void ImproveBasis(int i, bool independent, Basis* basis, Vector6d* y);
   Basis GreedyBasis(std::span<const int> common, int i) const;
   Basis ExactBasis(std::span<const int> common, int i) const;
   void BearAll(int i);
-  void Bear(const Birth& birth, const Basis& basis, const Vector6d& y);
+  void Bear(std::size_t k, int i);
 
   CertifiedDualWorkspace::Impl& w_;
-  const std::vector<Wide<E>> integers_;
+  WideRows<E>& integers_;
   const int n_, rank_;
   const double tolerance_;
   CertifiedDual::Counters& counters_;
 };
 
-/** `inside`: a row on whose negative side the ray lies strictly. */
+/** `orientation`: times y is the ray. */
 template <int E>
-void CertifiedRun<E>::Store(int slot, const Basis& basis, const Vector6d& y, int inside) {
+void CertifiedRun<E>::Store(int slot, const Basis& basis, const Vector6d& y, int orientation) {
   CertifiedRays& rays = w_.rays;
-  const std::size_t needed = static_cast<std::size_t>(slot) + 1;
-  if (rays.basis.size() < needed || rays.exact.size() < needed * kWords) {
-    const std::size_t size = 2 * needed + 64;
-    rays.basis.resize(size);
-    rays.orientation.resize(size);
-    rays.has_fixed.resize(size);
-    rays.has_sheared.resize(size);
-    rays.sheared.resize(size);
-    rays.has_exact.resize(size);
-    rays.fixed.resize(size);
-    rays.exact.resize(size * kWords);
-  }
-  ++counters_.rays;
   rays.basis[slot] = basis;
-  rays.orientation[slot] = 1;
+  rays.orientation[slot] = static_cast<std::int8_t>(orientation);
   rays.has_fixed[slot] = 0;
   rays.has_sheared[slot] = 0;
   rays.has_exact[slot] = 0;
+  w_.table.Set(slot, orientation < 0 ? Vector6d(-y) : y);
+}
+
+/** `inside`: a row on whose negative side the ray lies strictly. */
+template <int E>
+void CertifiedRun<E>::Orient(int slot, const Basis& basis, const Vector6d& y, int inside) {
   const double value = y.dot(w_.rows.rows[inside]);
-  const int side = value > tolerance_ ? 1 : value < -tolerance_ ? -1 : WideSide(slot, inside);
+  Store(slot, basis, y, value > 0 ? -1 : 1);
+  if (std::abs(value) > tolerance_) return;
+  w_.rays.orientation[slot] = 1;
+  const int side = WideSide(slot, inside);
   assert(side != 0);
-  if (side > 0) rays.orientation[slot] = -1;
+  w_.rays.orientation[slot] = static_cast<std::int8_t>(-side);
   w_.table.Set(slot, side > 0 ? Vector6d(-y) : y);
+}
+
+/** Room for rays in all slots below n. */
+template <int E>
+void CertifiedRun<E>::Grow(int n) {
+  w_.table.Grow(n);
+  CertifiedRays& rays = w_.rays;
+  const auto needed = static_cast<std::size_t>(n);
+  if (rays.basis.size() >= needed && rays.exact.size() >= needed * kWords) return;
+  const std::size_t size = 2 * needed + 64;
+  rays.basis.resize(size);
+  rays.orientation.resize(size);
+  rays.has_fixed.resize(size);
+  rays.has_sheared.resize(size);
+  rays.has_exact.resize(size);
+  rays.fixed.resize(size);
+  rays.sheared.resize(size);
+  rays.exact.resize(size * kWords);
 }
 
 // Gram-Schmidt with the farthest next; may end in dependent rows.
@@ -251,21 +287,23 @@ Basis CertifiedRun<E>::ExactBasis(std::span<const int> common, int i) const {
 }
 
 /** The basis of a parent that has four rows common to both, with row i for the fifth: independent,
- as four independent rows stay so and row i is off the face. False where there is none. */
+ as four independent rows stay so and row i is off the face. Then that fifth row: it holds the parent
+ alone, so that the ray is strictly inside of it. False where no parent has such a basis. */
 template <int E>
-bool CertifiedRun<E>::FromParent(const Birth& birth, int i, Basis* basis) const {
+bool CertifiedRun<E>::FromParent(const Birth& birth, int i, std::array<int, 6>* rows) const {
   for (const int parent : {birth.p, birth.q}) {
-    const int other = parent == birth.p ? birth.q : birth.p;
-    *basis = w_.rays.basis[parent];
+    const auto shared = w_.graph.planes(parent == birth.p ? birth.q : birth.p);
+    const Basis& basis = w_.rays.basis[parent];
     int kept = 0, lost = 0;
     for (int k = 0; k < 5; ++k) {
-      if ((*basis)[k] >= n_ || w_.graph.Holds((*basis)[k], other)) {
-        ++kept;
-      } else {
-        lost = k;
-      }
+      const int row = basis[k];
+      const bool is_common = row >= n_ || (shared[row / 64] >> (row % 64) & 1) != 0;
+      kept += is_common;
+      lost = is_common ? lost : k;
+      (*rows)[k] = row;
     }
-    (*basis)[lost] = i;
+    (*rows)[5] = basis[lost];
+    (*rows)[lost] = i;
     if (kept == 4) return true;
   }
   return false;
@@ -300,10 +338,10 @@ void CertifiedRun<E>::ImproveBasis(int i, bool independent, Basis* basis, Vector
   *y = z;
 }
 
-/** Stores a ray with its basis and the normal of that. */
+/** Of the planes that hold one parent only, so that the ray is strictly inside of them all, that
+ which the normal is farthest off. */
 template <int E>
-void CertifiedRun<E>::Bear(const Birth& birth, const Basis& basis, const Vector6d& y) {
-  // Planes that hold one parent only; the ray is strictly inside all of them. The clearest.
+int CertifiedRun<E>::Inside(const Birth& birth, const Vector6d& y) const {
   int inside = -1;
   double clearest = -1;
   for (const int parent : {birth.p, birth.q}) {
@@ -317,31 +355,43 @@ void CertifiedRun<E>::Bear(const Birth& birth, const Basis& basis, const Vector6
       }
     }
   }
-  Store(birth.slot, basis, y, inside);
+  return inside;
 }
 
-/** The rays born on plane i: each has five independent rows among those common to its parents, and
- i. */
+/** Stores the k-th ray born on plane i. It has five independent rows among those common to its
+ parents, and i: those of the candidate, unless the doubles see them badly. */
+template <int E>
+void CertifiedRun<E>::Bear(std::size_t k, int i) {
+  constexpr double kGood = 1e-5;  // no verdict depends on it
+  const Birth& birth = w_.births[k];
+  const auto& rows = w_.candidates.sets[k];
+  Basis basis{rows[0], rows[1], rows[2], rows[3], rows[4]};
+  const Vector6d& candidate = w_.candidates.normals[k];
+  const double product = w_.candidates.products[k];
+  if (birth.from_parent) {
+    const bool good = w_.candidates.largest[k] > std::max(kGood, tolerance_);
+    if (good && std::abs(product) > tolerance_) {
+      return Store(birth.slot, basis, candidate, product > 0 ? -1 : 1);
+    }
+    if (good) return Orient(birth.slot, basis, candidate, Inside(birth, candidate));
+  }
+  Vector6d y = candidate;
+  FillCommon(birth);
+  // Of precisely so many common rows there are no others to choose.
+  const bool is_only = birth.from_parent && static_cast<int>(w_.common.size()) == rank_ - 2;
+  if (!is_only) ImproveBasis(i, birth.from_parent, &basis, &y);
+  Orient(birth.slot, basis, y, Inside(birth, y));
+}
+
 template <int E>
 void CertifiedRun<E>::BearAll(int i) {
-  constexpr double kGood = 1e-5;  // no verdict depends on it
-  const std::size_t count = w_.births.size();
-  w_.bases.resize(count);
-  w_.normals.resize(count);
-  w_.from_parent.resize(count);
-  for (std::size_t k = 0; k < count; ++k) {
-    w_.from_parent[k] = FromParent(w_.births[k], i, &w_.bases[k]);
+  FloatNormals& candidates = w_.candidates;
+  candidates.sets.resize(w_.births.size());
+  for (std::size_t k = 0; k < w_.births.size(); ++k) {
+    w_.births[k].from_parent = FromParent(w_.births[k], i, &candidates.sets[k]);
   }
-  FloatNormals(w_.rows.rows, w_.bases, w_.normals.data());
-  for (std::size_t k = 0; k < count; ++k) {
-    const bool independent = w_.from_parent[k];
-    if (!independent || Largest(w_.normals[k]) <= std::max(kGood, tolerance_)) {
-      FillCommon(w_.births[k]);
-      const bool is_only = independent && static_cast<int>(w_.common.size()) == rank_ - 2;
-      if (!is_only) ImproveBasis(i, independent, &w_.bases[k], &w_.normals[k]);
-    }
-    Bear(w_.births[k], w_.bases[k], w_.normals[k]);
-  }
+  candidates.Compute(w_.rows.rows);
+  for (std::size_t k = 0; k < w_.births.size(); ++k) Bear(k, i);
 }
 
 template <int E>
@@ -363,7 +413,8 @@ void CertifiedRun<E>::Add(int i) {
   }
   w_.births.clear();
   graph.Cut(i, [&](int slot, int p, int q) { w_.births.push_back({slot, p, q}); });
-  w_.table.Grow(graph.num_slots());
+  Grow(graph.num_slots());
+  counters_.rays += static_cast<std::int64_t>(w_.births.size());
   BearAll(i);
   for (const int s : outside) w_.table.Set(s, Vector6d::Zero());
 }

@@ -8,6 +8,7 @@
 #include "cguide/numeric/certified_facets.h"
 #include "cguide/numeric/dual_kernels_internal.h"
 #include "cguide/numeric/fixed_point_internal.h"
+#include "cguide/numeric/float_normals_internal.h"
 #include "cguide/numeric/generator_rows_internal.h"
 #include "cguide/numeric/polar_graph_internal.h"
 #include "cguide/numeric/sheared_normal_internal.h"
@@ -37,6 +38,7 @@ struct CertifiedRays {
 /** A ray born on the face of p, outside of the plane, and q. */
 struct Birth {
   int slot, p, q;
+  bool from_parent = false;  ///< its basis is that of a parent with one row replaced
 };
 
 struct CertifiedDualWorkspace::Impl {
@@ -49,13 +51,12 @@ struct CertifiedDualWorkspace::Impl {
    applied at the same point: their moments are one linear map of their forces. */
   std::vector<std::array<std::int32_t, 2>> same_point;
   std::vector<Eigen::Vector3d> points, forces;  // where there are such
+  std::vector<std::int32_t> force_of;           // the first generator of the same force
   FixedForces fixed_forces;                     // once asked for
   std::vector<int> order, common;
   // Of the rays born on the plane being added.
   std::vector<Birth> births;
-  std::vector<std::array<std::int32_t, 5>> bases;
-  std::vector<Vector6d> normals;
-  std::vector<std::int8_t> from_parent;  // whether the basis is a parent's with one row replaced
+  FloatNormals candidates;  // of their bases
 };
 
 }  // namespace cguide::numeric

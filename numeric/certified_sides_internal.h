@@ -14,7 +14,7 @@ namespace cguide::numeric {
 // Columns are scaled up to kFixedBits; a unit vector may have any length.
 template <int E>
 void CertifiedRun<E>::FillFixedRows() {
-  const int count = static_cast<int>(integers_.size() / 6);
+  const int count = static_cast<int>(w_.rows.rows.size());
   w_.fixed_rows.resize(count);
   for (int i = 0; i < count; ++i) {
     for (int k = 0; k < 6; ++k) {
@@ -140,6 +140,27 @@ inline bool NotOnALine(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const
   return std::abs(s - t) > 1e-15 * size && size > 1e-200;
 }
 
+/** Whether a + b = c + d: the sums rounded are equal, and what the rounding took off, which is found
+ exactly [Knuth 1969, 4.2.2, theorem C]. */
+inline bool EqualSums(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                      const Eigen::Vector3d& d) {
+  for (int k = 0; k < 3; ++k) {
+    const double sum = a[k] + b[k];
+    if (sum != c[k] + d[k]) return false;
+    const double a_part = sum - b[k], c_part = sum - d[k];
+    const double error = (a[k] - a_part) + (b[k] - (sum - a_part));
+    if (error != (c[k] - c_part) + (d[k] - (sum - c_part))) return false;
+  }
+  return true;
+}
+
+/** Whether p is the fourth corner of a parallelogram with corners a, b, c, in any order, exactly: an
+ affine combination of them. */
+inline bool MakeParallelogram(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                              const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  return EqualSums(p, a, b, c) || EqualSums(p, b, a, c) || EqualSums(p, c, a, b);
+}
+
 /** Whether the ray is certain to be in the planes of all forces at the point of generator `begin`,
  as it is in those of three that are independent; the ends of those that it holds. */
 template <int E>
@@ -157,20 +178,34 @@ bool CertifiedRun<E>::HoldsThree(int begin, int end, int slot, int* first, int* 
   return false;
 }
 
+/** How many of generators begin .. end - 1 the ray lies in the planes of. */
+template <int E>
+int CertifiedRun<E>::NumHeld(int begin, int end, int slot) const {
+  const auto planes = w_.graph.planes(slot);
+  int count = 0;
+  for (int word = begin / 64; word <= (end - 1) / 64; ++word) {
+    std::uint64_t bits = planes[word];
+    if (begin > 64 * word) bits &= ~std::uint64_t{0} << (begin - 64 * word);
+    if (end < 64 * (word + 1)) bits &= (std::uint64_t{1} << (end - 64 * word)) - 1;
+    count += std::popcount(bits);
+  }
+  return count;
+}
+
 /** Whether the ray is certain to be in the planes of all forces at the point of generator i. Where
  it is in those of two at that point, and of all at another point, the force along the line of the
  points is a third: it has the same moment at both. */
 template <int E>
 bool CertifiedRun<E>::HoldsPointOf(int i, int slot) const {
   const auto [begin, end] = w_.same_point[i];
-  if (begin + 1 == end) return false;
+  if (begin + 1 == end || NumHeld(begin, end, slot) < 2) return false;
   int first, last;
   if (HoldsThree(begin, end, slot, &first, &last)) return true;
-  if (first == last) return false;
   for (int k = 0; k < n_; k = w_.same_point[k][1]) {
     int a, b;
-    if (k == begin || w_.same_point[k][1] - k < 3) continue;
-    if (!HoldsThree(k, w_.same_point[k][1], slot, &a, &b)) continue;
+    const int k_end = w_.same_point[k][1];
+    if (k == begin || k_end - k < 3 || NumHeld(k, k_end, slot) < 3) continue;
+    if (!HoldsThree(k, k_end, slot, &a, &b)) continue;
     const Eigen::Vector3d line =
         (w_.points[k] - w_.points[begin]).cwiseProduct(w_.rows.column_scale.head<3>());
     const double size = line.cwiseAbs().maxCoeff();
@@ -187,40 +222,49 @@ bool CertifiedRun<E>::HoldsPointOf(int i, int slot) const {
  the ray is along it. (Were u and v parallel, the five would have rank four at most.) */
 template <int E>
 bool CertifiedRun<E>::HoldsForceOf(int i, int slot) const {
-  if (w_.forces.empty()) return false;
-  const Eigen::Vector3d& u = w_.forces[i];
-  int other = -1, same = 0;
+  if (w_.force_of.empty()) return false;
+  const std::int32_t u = w_.force_of[i];
+  std::int32_t other = -1;
+  bool has_u = false;
   for (const int row : w_.rays.basis[slot]) {
     if (row >= n_) return false;
-    if (w_.forces[row] == u) {
-      ++same;
+    const std::int32_t v = w_.force_of[row];
+    if (v == u) {
+      has_u = true;
     } else if (other < 0) {
-      other = row;
-    } else if (w_.forces[row] != w_.forces[other]) {
+      other = v;
+    } else if (v != other) {
       return false;
     }
   }
-  return same > 0;
+  return has_u;
 }
 
 /** Whether the ray is certain to be in the plane of generator i as it is in those of the same force
- at three points, not on a line, which agree with its point in one coordinate: along the ray the
- moment of a force is affine in the point. */
+ at other points. Along the ray the moment of a force is affine in the point: three points suffice
+ that are not on a line and agree with the fourth in one coordinate, or make a parallelogram with
+ it. */
 template <int E>
 bool CertifiedRun<E>::HoldsForceAbout(int i, int slot) const {
-  if (w_.forces.empty()) return false;
-  const Eigen::Vector3d &u = w_.forces[i], &p = w_.points[i];
-  for (int k = 0; k < 3; ++k) {
-    int found = 0, first = 0, second = 0;
-    const int a = (k + 1) % 3, b = (k + 2) % 3;
-    for (int j = 0; j < n_; ++j) {
-      if (w_.points[j][k] != p[k] || !w_.graph.Holds(j, slot) || w_.forces[j] != u) continue;
-      if (++found == 1) {
-        first = j;
-      } else if (found == 2) {
-        second = j;
-      } else if (NotOnALine(w_.points[first], w_.points[second], w_.points[j], a, b)) {
-        return true;
+  if (w_.force_of.empty()) return false;
+  constexpr int kMost = 8;
+  int held[kMost], size = 0;
+  for (int j = 0; j < n_ && size < kMost; ++j) {
+    if (w_.force_of[j] == w_.force_of[i] && w_.graph.Holds(j, slot)) held[size++] = j;
+  }
+  const auto& points = w_.points;
+  const Eigen::Vector3d& p = points[i];
+  for (int x = 0; x < size; ++x) {
+    for (int y = 0; y < x; ++y) {
+      for (int z = 0; z < y; ++z) {
+        const Eigen::Vector3d &a = points[held[x]], &b = points[held[y]], &c = points[held[z]];
+        if (MakeParallelogram(p, a, b, c)) return true;
+        for (int k = 0; k < 3; ++k) {
+          if (a[k] == p[k] && b[k] == p[k] && c[k] == p[k] &&
+              NotOnALine(a, b, c, (k + 1) % 3, (k + 2) % 3)) {
+            return true;
+          }
+        }
       }
     }
   }
