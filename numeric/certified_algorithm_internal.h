@@ -287,8 +287,8 @@ Basis CertifiedRun<E>::ExactBasis(std::span<const int> common, int i) const {
 }
 
 /** The basis of a parent that has four rows common to both, with row i for the fifth: independent,
- as four independent rows stay so and row i is off the face. Then that fifth row: it holds the parent
- alone, so that the ray is strictly inside of it. False where no parent has such a basis. */
+ as four independent rows stay so and row i is off the face. Then that fifth row: it holds the
+ parent alone, so that the ray is strictly inside of it. False where no parent has such a basis. */
 template <int E>
 bool CertifiedRun<E>::FromParent(const Birth& birth, int i, std::array<int, 6>* rows) const {
   for (const int parent : {birth.p, birth.q}) {
@@ -425,6 +425,13 @@ Vector6d CertifiedRun<E>::Normal(int slot) {
   const Vector6d y = w_.table.Get(slot);
   if (Largest(y) > 1e7 * tolerance_) return w_.rows.Unscaled(y).normalized();
   const double orientation = w_.rays.orientation[slot];
+  if (const ShearedRay* const ray = StoredSheared(slot)) {
+    Vector6d h;
+    if (w_.fixed_forces.AsDoubles(ray->normal, w_.points[ray->rows[0]], &h)) {
+      h /= Largest(h);  // its square may overflow
+      return (ray->is_odd ? -orientation : orientation) * h.normalized();
+    }
+  }
   double fraction[6];
   int exponent[6], top = std::numeric_limits<int>::min(), last = top;
   for (int k = 0; k < 6; ++k) {

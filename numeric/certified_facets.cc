@@ -85,8 +85,8 @@ std::vector<int> PivotBasis(const GeneratorRows& rows) {
   return basis;
 }
 
-// Equal forces are likely to stand at the same place among those of their points, so these are looked
-// at first.
+// Equal forces are likely to stand at the same place among those of their points, so these are
+// looked at first.
 void FillForceOf(Impl* impl) {
   const auto& u = impl->forces;
   const int n = static_cast<int>(u.size());

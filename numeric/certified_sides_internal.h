@@ -140,8 +140,8 @@ inline bool NotOnALine(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const
   return std::abs(s - t) > 1e-15 * size && size > 1e-200;
 }
 
-/** Whether a + b = c + d: the sums rounded are equal, and what the rounding took off, which is found
- exactly [Knuth 1969, 4.2.2, theorem C]. */
+/** Whether a + b = c + d: the sums rounded are equal, and what the rounding took off, which is
+ found exactly [Knuth 1969, 4.2.2, theorem C]. */
 inline bool EqualSums(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                       const Eigen::Vector3d& d) {
   for (int k = 0; k < 3; ++k) {
@@ -154,8 +154,8 @@ inline bool EqualSums(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const 
   return true;
 }
 
-/** Whether p is the fourth corner of a parallelogram with corners a, b, c, in any order, exactly: an
- affine combination of them. */
+/** Whether p is the fourth corner of a parallelogram with corners a, b, c, in any order, exactly:
+ an affine combination of them. */
 inline bool MakeParallelogram(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                               const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   return EqualSums(p, a, b, c) || EqualSums(p, b, a, c) || EqualSums(p, c, a, b);

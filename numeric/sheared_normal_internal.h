@@ -112,6 +112,12 @@ class FixedForces {
   /** Of force i about the point of force `about`, computed once where there is room to keep it. */
   const Triple<Fixed>& Moment(int about, int i);
 
+  /** The normal of rows about the point of force `about`, as h of h.(u, q x u) up to a positive
+   factor; false where its errors are not certain to be below 2^-24 of it, in coordinates scaled to
+   the generators, or numbers are extreme. */
+  bool AsDoubles(const ShearedNormal<Fixed>& normal, const Eigen::Vector3d& about,
+                 Eigen::Matrix<double, 6, 1>* h) const;
+
   /** Words that an integer takes with zeros common to all left out, so that ShearedNormal does not
    overflow: forces and arms are below b = 2^(64 N - 2) in size, as they are below 2^126 in fixed
    point; then n and M are at most 2 b^2, s is at most 6 b^3, M x M at most 8 b^4, alpha at most
@@ -138,6 +144,8 @@ class FixedForces {
   std::vector<Triple<Fixed>> points_;  // likewise
   // All numbers are exact and multiples of these powers of two; else negative.
   int force_zeros_ = -1, point_zeros_ = -1;
+  int point_shift_ = 0;                 // points are scaled by its power of two
+  double extent_ = 0;                   // of the scaled points, the longest of their box
   std::vector<std::int32_t> point_of_;  // number of its point
   std::vector<Triple<Fixed>> moments_;  // of force i about point k at k n + i; empty if too many
   std::vector<std::uint8_t> has_moment_;
