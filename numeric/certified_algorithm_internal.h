@@ -39,7 +39,13 @@ class WideRows {
   std::vector<Wide<E>> entries_;
 };
 
-inline double Largest(const Vector6d& y) { return y.cwiseAbs().maxCoeff(); }
+inline double Largest(const Vector6d& y) {
+  double largest = std::abs(y[0]);
+  for (int k = 1; k < 6; ++k) largest = std::max(largest, std::abs(y[k]));
+  return largest;
+}
+
+inline Vector6d UnitOf(const Vector6d& y) { return (1 / std::sqrt(y.squaredNorm())) * y; }
 
 /** The vector of fraction[k] 2^exponent[k], made a unit one; not zero. */
 inline Vector6d Unit(const double* fraction, const int* exponent) {
@@ -157,7 +163,7 @@ class CertifiedRun {
   bool SetSheared(const Basis& basis, ShearedRay* ray);
   int ShearedSign(const ShearedRay& ray, int slot, int i);
   bool HoldsByRank(int i, int slot) const;
-  int NumHeld(int begin, int end, int slot) const;
+  bool HoldsAtLeast(int least, int begin, int end, int slot) const;
   bool HoldsThree(int begin, int end, int slot, int* first, int* last) const;
   bool HoldsPointOf(int i, int slot) const;
   bool HoldsForceOf(int i, int slot) const;
@@ -423,7 +429,7 @@ void CertifiedRun<E>::Add(int i) {
 template <int E>
 Vector6d CertifiedRun<E>::Normal(int slot) {
   const Vector6d y = w_.table.Get(slot);
-  if (Largest(y) > 1e7 * tolerance_) return w_.rows.Unscaled(y).normalized();
+  if (Largest(y) > 1e7 * tolerance_) return UnitOf(w_.rows.Unscaled(y));
   const double orientation = w_.rays.orientation[slot];
   if (const ShearedRay* const ray = StoredSheared(slot)) {
     Vector6d h;

@@ -178,18 +178,19 @@ bool CertifiedRun<E>::HoldsThree(int begin, int end, int slot, int* first, int* 
   return false;
 }
 
-/** How many of generators begin .. end - 1 the ray lies in the planes of. */
+/** Whether the ray lies in the planes of at least `least` of generators begin .. end - 1. */
 template <int E>
-int CertifiedRun<E>::NumHeld(int begin, int end, int slot) const {
+bool CertifiedRun<E>::HoldsAtLeast(int least, int begin, int end, int slot) const {
   const auto planes = w_.graph.planes(slot);
-  int count = 0;
   for (int word = begin / 64; word <= (end - 1) / 64; ++word) {
     std::uint64_t bits = planes[word];
     if (begin > 64 * word) bits &= ~std::uint64_t{0} << (begin - 64 * word);
     if (end < 64 * (word + 1)) bits &= (std::uint64_t{1} << (end - 64 * word)) - 1;
-    count += std::popcount(bits);
+    for (; bits != 0; bits &= bits - 1) {
+      if (--least == 0) return true;
+    }
   }
-  return count;
+  return false;
 }
 
 /** Whether the ray is certain to be in the planes of all forces at the point of generator i. Where
@@ -198,13 +199,13 @@ int CertifiedRun<E>::NumHeld(int begin, int end, int slot) const {
 template <int E>
 bool CertifiedRun<E>::HoldsPointOf(int i, int slot) const {
   const auto [begin, end] = w_.same_point[i];
-  if (begin + 1 == end || NumHeld(begin, end, slot) < 2) return false;
+  if (begin + 1 == end || !HoldsAtLeast(2, begin, end, slot)) return false;
   int first, last;
   if (HoldsThree(begin, end, slot, &first, &last)) return true;
   for (int k = 0; k < n_; k = w_.same_point[k][1]) {
     int a, b;
     const int k_end = w_.same_point[k][1];
-    if (k == begin || k_end - k < 3 || NumHeld(k, k_end, slot) < 3) continue;
+    if (k == begin || k_end - k < 3 || !HoldsAtLeast(3, k, k_end, slot)) continue;
     if (!HoldsThree(k, k_end, slot, &a, &b)) continue;
     const Eigen::Vector3d line =
         (w_.points[k] - w_.points[begin]).cwiseProduct(w_.rows.column_scale.head<3>());
