@@ -8,6 +8,7 @@
 
 #include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/certified_algorithm_internal.h"
+#include "cguide/numeric/certified_births_internal.h"
 #include "cguide/numeric/certified_sides_internal.h"
 #include "cguide/numeric/fp_guard.h"
 #include "cguide/numeric/insertion_order_internal.h"
