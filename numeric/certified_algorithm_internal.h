@@ -5,12 +5,12 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/certified_facets.h"
 #include "cguide/numeric/certified_run_internal.h"
 #include "cguide/numeric/minors_internal.h"
@@ -20,7 +20,30 @@ namespace cguide::numeric {
 
 using Basis = std::array<std::int32_t, 5>;
 
-inline double Largest(const Vector6d& y) { return y.cwiseAbs().maxCoeff(); }
+/** The integers of the generators, then of unit vectors, made once one is asked for. */
+template <int E>
+class WideRows {
+ public:
+  explicit WideRows(std::function<void(std::vector<Wide<E>>*)> fill) : fill_(std::move(fill)) {}
+  const Wide<E>* Row(int i) {
+    if (entries_.empty()) fill_(&entries_);
+    return entries_.data() + 6 * static_cast<std::size_t>(i);
+  }
+
+  void Clear() { entries_.clear(); }
+
+ private:
+  std::function<void(std::vector<Wide<E>>*)> fill_;
+  std::vector<Wide<E>> entries_;
+};
+
+inline double Largest(const Vector6d& y) {
+  double largest = std::abs(y[0]);
+  for (int k = 1; k < 6; ++k) largest = std::max(largest, std::abs(y[k]));
+  return largest;
+}
+
+inline Vector6d UnitOf(const Vector6d& y) { return (1 / std::sqrt(y.squaredNorm())) * y; }
 
 /** The vector of fraction[k] 2^exponent[k], made a unit one; not zero. */
 inline Vector6d Unit(const double* fraction, const int* exponent) {
@@ -49,15 +72,16 @@ inline Vector6d Unit(const double* fraction, const int* exponent) {
 template <int E>
 class CertifiedRun {
  public:
-  CertifiedRun(CertifiedDualWorkspace::Impl* impl, std::vector<Wide<E>> integers, int n, int rank,
+  CertifiedRun(CertifiedDualWorkspace::Impl* impl, WideRows<E>* integers, int n, int rank,
                CertifiedDual::Counters* counters)
       : w_(*impl),
-        integers_(std::move(integers)),
+        integers_(*integers),
         n_(n),
         rank_(rank),
         tolerance_(impl->rows.determinant_error),
         counters_(*counters) {
     w_.fixed_rows.clear();
+    w_.fixed_forces.Clear();
   }
 
   /** Whether these rows (six) are independent, exactly. */
@@ -77,13 +101,15 @@ class CertifiedRun {
     w_.graph.Reset(n_, rank_);
     w_.table.Reset();
     w_.graph.StartSimplex(basis);
+    Grow(w_.graph.num_slots());
+    counters_.rays += rank_;
     for (int k = 0; k < rank_; ++k) {
       Basis five;
       for (int j = 0, m = 0; j < rank_; ++j) {
         if (j != k) five[m++] = basis[j];
       }
       for (int j = rank_ - 1; j < 5; ++j) five[j] = n_ + j - (rank_ - 1);
-      Store(k, five, FloatNormal(five), basis[k]);
+      Orient(k, five, FloatNormal(five), basis[k]);
     }
   }
 
@@ -94,7 +120,7 @@ class CertifiedRun {
  private:
   static constexpr int kWords = 30 * E;
 
-  const Wide<E>* Row(int i) const { return integers_.data() + 6 * static_cast<std::size_t>(i); }
+  const Wide<E>* Row(int i) const { return integers_.Row(i); }
   Vector6d FloatNormal(const Basis& b) const {
     Vector6d y;
     const auto& rows = w_.rows.rows;
@@ -131,180 +157,77 @@ class CertifiedRun {
   }
   const std::array<Fixed, 6>& StoredFixed(int slot);
   const Wide<5 * E>* StoredNormal(int slot);
+  const ShearedRay* StoredSheared(int slot);
+  bool SetSheared(const Basis& basis, ShearedRay* ray);
+  int ShearedSign(const ShearedRay& ray, int slot, int i);
+  bool HoldsByRank(int i, int slot) const;
+  bool HoldsAtLeast(int least, int begin, int end, int slot) const;
   bool HoldsThree(int begin, int end, int slot, int* first, int* last) const;
   bool HoldsPointOf(int i, int slot) const;
   bool HoldsForceOf(int i, int slot) const;
   bool HoldsForceAbout(int i, int slot) const;
   int ExactSide(int slot, int i);
   int WideSide(int slot, int i);
-  void Store(int slot, const Basis& basis, const Vector6d& y, int inside);
-  bool TryBasis(const Basis& basis, Vector6d* y) const;
-  Basis FindBasis(int p, int q, int i, Vector6d* y);
+  void Grow(int n);
+  void Store(int slot, const Basis& basis, const Vector6d& y, int orientation);
+  void Orient(int slot, const Basis& basis, const Vector6d& y, int inside);
+  bool FromParent(const Birth& birth, int i, std::array<int, 6>* rows) const;
+  int Inside(const Birth& birth, const Vector6d& y) const;
+  void FillCommon(const Birth& birth);
+  void ImproveBasis(int i, bool independent, Basis* basis, Vector6d* y);
   Basis GreedyBasis(std::span<const int> common, int i) const;
   Basis ExactBasis(std::span<const int> common, int i) const;
-  void Bear(int slot, int p, int q, int i);
+  void BearAll(int i);
+  void Bear(std::size_t k, int i);
 
   CertifiedDualWorkspace::Impl& w_;
-  const std::vector<Wide<E>> integers_;
+  WideRows<E>& integers_;
   const int n_, rank_;
   const double tolerance_;
   CertifiedDual::Counters& counters_;
 };
 
+/** `orientation`: times y is the ray. */
+template <int E>
+void CertifiedRun<E>::Store(int slot, const Basis& basis, const Vector6d& y, int orientation) {
+  CertifiedRays& rays = w_.rays;
+  rays.basis[slot] = basis;
+  rays.orientation[slot] = static_cast<std::int8_t>(orientation);
+  rays.has_fixed[slot] = 0;
+  rays.has_sheared[slot] = 0;
+  rays.has_exact[slot] = 0;
+  w_.table.Set(slot, orientation < 0 ? Vector6d(-y) : y);
+}
+
 /** `inside`: a row on whose negative side the ray lies strictly. */
 template <int E>
-void CertifiedRun<E>::Store(int slot, const Basis& basis, const Vector6d& y, int inside) {
-  CertifiedRays& rays = w_.rays;
-  const std::size_t needed = static_cast<std::size_t>(slot) + 1;
-  if (rays.basis.size() < needed || rays.exact.size() < needed * kWords) {
-    const std::size_t size = 2 * needed + 64;
-    rays.basis.resize(size);
-    rays.orientation.resize(size);
-    rays.has_fixed.resize(size);
-    rays.has_exact.resize(size);
-    rays.fixed.resize(size);
-    rays.exact.resize(size * kWords);
-  }
-  ++counters_.rays;
-  rays.basis[slot] = basis;
-  rays.orientation[slot] = 1;
-  rays.has_fixed[slot] = 0;
-  rays.has_exact[slot] = 0;
+void CertifiedRun<E>::Orient(int slot, const Basis& basis, const Vector6d& y, int inside) {
   const double value = y.dot(w_.rows.rows[inside]);
-  const int side = value > tolerance_ ? 1 : value < -tolerance_ ? -1 : WideSide(slot, inside);
+  Store(slot, basis, y, value > 0 ? -1 : 1);
+  if (std::abs(value) > tolerance_) return;
+  w_.rays.orientation[slot] = 1;
+  const int side = WideSide(slot, inside);
   assert(side != 0);
-  if (side > 0) rays.orientation[slot] = -1;
-  w_.table.Grow(w_.graph.num_slots());
+  w_.rays.orientation[slot] = static_cast<std::int8_t>(-side);
   w_.table.Set(slot, side > 0 ? Vector6d(-y) : y);
 }
 
-/** Whether the rows are independent for certain; their normal. Each of its entries is the
- determinant of the rows and a unit vector. */
+/** Room for rays in all slots below n. */
 template <int E>
-bool CertifiedRun<E>::TryBasis(const Basis& basis, Vector6d* y) const {
-  *y = FloatNormal(basis);
-  return Largest(*y) > tolerance_;
-}
-
-// Gram-Schmidt with the farthest next; may end in dependent rows.
-template <int E>
-Basis CertifiedRun<E>::GreedyBasis(std::span<const int> common, int i) const {
-  Vector6d rest[64];
-  const int size = std::min<int>(64, static_cast<int>(common.size()));
-  Basis basis;
-  int taken = 0;
-  const auto take = [&](int row, Vector6d direction) {
-    basis[taken++] = row;
-    direction.normalize();
-    for (int k = 0; k < size; ++k) rest[k] -= direction.dot(rest[k]) * direction;
-  };
-  for (int k = 0; k < size; ++k) rest[k] = w_.rows.rows[common[k]];
-  take(i, w_.rows.rows[i]);
-  for (int j = rank_ - 1; j < 5; ++j) {
-    const int unit = n_ + j - (rank_ - 1);
-    // Units are orthogonal to each other, not to row i: near enough for a choice.
-    take(unit, w_.rows.rows[unit]);
-  }
-  while (taken < 5) {
-    int best = 0;
-    for (int k = 1; k < size; ++k) {
-      if (rest[k].squaredNorm() > rest[best].squaredNorm()) best = k;
-    }
-    take(common[best], rest[best]);
-  }
-  return basis;
-}
-
-// Independent rows in exact arithmetic; there are five.
-template <int E>
-Basis CertifiedRun<E>::ExactBasis(std::span<const int> common, int i) const {
-  Basis basis;
-  int taken = 0;
-  std::vector<VectorXq> chosen;
-  const auto offer = [&](int row) {
-    VectorXq v(6);
-    for (int k = 0; k < 6; ++k) v[k] = ToInteger(Row(row)[k]);
-    chosen.push_back(v);
-    if (exact::Rank(chosen) == static_cast<int>(chosen.size())) {
-      basis[taken++] = row;
-    } else {
-      chosen.pop_back();
-    }
-  };
-  offer(i);
-  for (int j = rank_ - 1; j < 5; ++j) offer(n_ + j - (rank_ - 1));
-  for (std::size_t k = 0; k < common.size() && taken < 5; ++k) offer(common[k]);
-  assert(taken == 5);
-  return basis;
-}
-
-// Five independent rows among those common to p and q, and i.
-template <int E>
-Basis CertifiedRun<E>::FindBasis(int p, int q, int i, Vector6d* y) {
-  constexpr double kGood = 1e-5;  // no verdict depends on it
-  const PolarGraph& graph = w_.graph;
-  std::vector<int>& common = w_.common;
-  common.clear();
-  const auto a = graph.planes(p), b = graph.planes(q);
-  for (std::size_t word = 0; word < a.size(); ++word) {
-    for (std::uint64_t bits = a[word] & b[word]; bits != 0; bits &= bits - 1) {
-      common.push_back(static_cast<int>(64 * word) + std::countr_zero(bits));
-    }
-  }
-  bool certain = false;
-  Basis basis;
-  for (const int parent : {p, q}) {
-    int kept = 0, lost = -1;
-    const int other = parent == p ? q : p;
-    basis = w_.rays.basis[parent];
-    for (int k = 0; k < 5; ++k) {
-      if (basis[k] >= n_ || graph.Holds(basis[k], other)) {
-        ++kept;
-      } else {
-        lost = k;
-      }
-    }
-    if (kept != 4) continue;
-    basis[lost] = i;
-    certain = TryBasis(basis, y);
-    if (certain && Largest(*y) > kGood) return basis;
-    // Four independent rows stay so, and row i is off the face: independent for certain, though
-    // the doubles cannot see it.
-    certain = true;
-    if (static_cast<int>(common.size()) == rank_ - 2) return basis;  // there is no other
-    break;
-  }
-  const Basis greedy = GreedyBasis(common, i);
-  Vector6d z;
-  if (TryBasis(greedy, &z) && (!certain || Largest(z) > Largest(*y))) {
-    *y = z;
-    return greedy;
-  }
-  if (certain) return basis;
-  basis = ExactBasis(common, i);
-  *y = FloatNormal(basis);
-  return basis;
-}
-
-template <int E>
-void CertifiedRun<E>::Bear(int slot, int p, int q, int i) {
-  Vector6d y;
-  const Basis basis = FindBasis(p, q, i, &y);
-  // Planes that hold one parent only; the ray is strictly inside all of them. The clearest.
-  int inside = -1;
-  double clearest = -1;
-  for (const int parent : {p, q}) {
-    const int other = parent == p ? q : p;
-    for (const int row : w_.rays.basis[parent]) {
-      if (row >= n_ || w_.graph.Holds(row, other)) continue;
-      const double size = std::abs(y.dot(w_.rows.rows[row]));
-      if (size > clearest) {
-        clearest = size;
-        inside = row;
-      }
-    }
-  }
-  Store(slot, basis, y, inside);
+void CertifiedRun<E>::Grow(int n) {
+  w_.table.Grow(n);
+  CertifiedRays& rays = w_.rays;
+  const auto needed = static_cast<std::size_t>(n);
+  if (rays.basis.size() >= needed && rays.exact.size() >= needed * kWords) return;
+  const std::size_t size = 2 * needed + 64;
+  rays.basis.resize(size);
+  rays.orientation.resize(size);
+  rays.has_fixed.resize(size);
+  rays.has_sheared.resize(size);
+  rays.has_exact.resize(size);
+  rays.fixed.resize(size);
+  rays.sheared.resize(size);
+  rays.exact.resize(size * kWords);
 }
 
 template <int E>
@@ -324,7 +247,11 @@ void CertifiedRun<E>::Add(int i) {
       if (side == 0) on_plane.push_back(s);
     }
   }
-  graph.Cut(i, [&](int slot, int p, int q) { Bear(slot, p, q, i); });
+  w_.births.clear();
+  graph.Cut(i, [&](int slot, int p, int q) { w_.births.push_back({slot, p, q}); });
+  Grow(graph.num_slots());
+  counters_.rays += static_cast<std::int64_t>(w_.births.size());
+  BearAll(i);
   for (const int s : outside) w_.table.Set(s, Vector6d::Zero());
 }
 
@@ -332,8 +259,15 @@ void CertifiedRun<E>::Add(int i) {
 template <int E>
 Vector6d CertifiedRun<E>::Normal(int slot) {
   const Vector6d y = w_.table.Get(slot);
-  if (Largest(y) > 1e7 * tolerance_) return w_.rows.Unscaled(y).normalized();
+  if (Largest(y) > 1e7 * tolerance_) return UnitOf(w_.rows.Unscaled(y));
   const double orientation = w_.rays.orientation[slot];
+  if (const ShearedRay* const ray = StoredSheared(slot)) {
+    Vector6d h;
+    if (w_.fixed_forces.AsDoubles(ray->normal, w_.points[ray->rows[0]], &h)) {
+      h /= Largest(h);  // its square may overflow
+      return (ray->is_odd ? -orientation : orientation) * h.normalized();
+    }
+  }
   double fraction[6];
   int exponent[6], top = std::numeric_limits<int>::min(), last = top;
   for (int k = 0; k < 6; ++k) {

@@ -5,12 +5,13 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/certified_algorithm_internal.h"
+#include "cguide/numeric/certified_births_internal.h"
 #include "cguide/numeric/certified_sides_internal.h"
 #include "cguide/numeric/fp_guard.h"
+#include "cguide/numeric/insertion_order_internal.h"
 
 namespace cguide::numeric {
 
@@ -85,6 +86,25 @@ std::vector<int> PivotBasis(const GeneratorRows& rows) {
   return basis;
 }
 
+// Equal forces are likely to stand at the same place among those of their points, so these are
+// looked at first.
+void FillForceOf(Impl* impl) {
+  const auto& u = impl->forces;
+  const int n = static_cast<int>(u.size());
+  impl->force_of.resize(n);
+  int stride = 0;
+  for (int i = 0; i < n; ++i) {
+    if (stride > 0 && i >= stride && u[i] == u[i - stride]) {
+      impl->force_of[i] = impl->force_of[i - stride];
+      continue;
+    }
+    int j = 0;
+    while (u[j] != u[i]) ++j;
+    impl->force_of[i] = j;
+    if (j < i) stride = i - j;
+  }
+}
+
 void FillSamePoint(std::span<const AppliedForce> generators, Impl* impl) {
   const int n = static_cast<int>(generators.size());
   impl->same_point.resize(n);
@@ -99,12 +119,14 @@ void FillSamePoint(std::span<const AppliedForce> generators, Impl* impl) {
     while (end < n && generators[end].p == generators[begin].p) ++end;
     for (int i = begin; i < end; ++i) impl->same_point[i] = {begin, end};
   }
+  FillForceOf(impl);
 }
 
 void FillSamePoint(std::span<const Vector6d> generators, Impl* impl) {
   impl->same_point.clear();
   impl->points.clear();
   impl->forces.clear();
+  impl->force_of.clear();
   for (int i = 0; i < static_cast<int>(generators.size()); ++i) {
     impl->same_point.push_back({i, i + 1});
   }
@@ -114,13 +136,18 @@ template <int E, typename Generator>
 void RunWith(std::span<const Generator> generators, Impl* impl, CertifiedDual* result) {
   const int n = static_cast<int>(generators.size());
   GeneratorRows& rows = impl->rows;
-  std::vector<Wide<E>> integers;
-  FillIntegers(generators, rows, &integers);
+  std::vector<int> left_out;  // coordinates
+  WideRows<E> integers([&](std::vector<Wide<E>>* entries) {
+    FillIntegers(generators, rows, entries);
+    for (const int k : left_out) {
+      for (int j = 0; j < 6; ++j) entries->push_back(Shifted<E>(j == k, 0));
+    }
+  });
   FillSamePoint(generators, impl);
   std::vector<int> basis = PivotBasis(rows);
   bool full = false;
   if (basis.size() == 6) {
-    CertifiedRun<E> probe(impl, integers, n, 6, &result->counters);
+    CertifiedRun<E> probe(impl, &integers, n, 6, &result->counters);
     full = probe.Independent({basis[0], basis[1], basis[2], basis[3], basis[4], basis[5]});
   }
   if (!full) {
@@ -128,23 +155,20 @@ void RunWith(std::span<const Generator> generators, Impl* impl, CertifiedDual* r
     basis = span.basis;
     result->equations = span.equations;
     if (basis.size() < 6) FillRows(generators, false, &rows);
-    for (const int k : span.left_out) {
-      rows.rows.push_back(0.5 * Vector6d::Unit(k));
-      for (int j = 0; j < 6; ++j) integers.push_back(Shifted<E>(j == k, 0));
-    }
+    left_out = span.left_out;
+    integers.Clear();
+    for (const int k : left_out) rows.rows.push_back(0.5 * Vector6d::Unit(k));
   }
   const int rank = result->rank = static_cast<int>(basis.size());
   if (rank == 0) return;
-  CertifiedRun<E> run(impl, std::move(integers), n, rank, &result->counters);
+  CertifiedRun<E> run(impl, &integers, n, rank, &result->counters);
   run.Start(basis);
   impl->order.clear();
   for (const int i : rows.nonzero) {
     if (std::find(basis.begin(), basis.end(), i) == basis.end()) impl->order.push_back(i);
   }
-  std::mt19937_64 rng(1953);
-  auto& order = impl->order;
-  for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng() % i]);
-  for (const int i : order) run.Add(i);
+  SortOutermostFirst(rows.rows, rows.nonzero, &impl->order);
+  for (const int i : impl->order) run.Add(i);
   const PolarGraph& graph = impl->graph;
   std::vector<std::uint64_t> zeros(result->words(), ~std::uint64_t{0});
   for (const int i : rows.nonzero) zeros[i / 64] &= ~(std::uint64_t{1} << i % 64);

@@ -41,6 +41,7 @@ struct CertifiedDual {
     std::int64_t rays = 0;           ///< born in the run
     std::int64_t fixed_normals = 0;  ///< of them, computed in fixed point of 128 bits
     std::int64_t exact_normals = 0;  ///< of them, computed in integers
+    std::int64_t sheared_signs = 0;  ///< in integers too, but half as long
     std::int64_t exact_sides = 0;    ///< sides that doubles left open
     bool reference = false;          ///< numbers too wide: the list is exact::FacetsOf's
   };
@@ -71,8 +72,9 @@ class CertifiedDualWorkspace {
  the ray in the planes of five of them against a sixth. Doubles decide where the determinant exceeds
  its error bound; points and forces that generators share, fixed point of 128 bits beyond its bound
  and integers of fixed width decide the others, ties among them. Forces at one point are recognised
- as such where they are listed side by side. Coordinates so far apart that the integers do not fit
- (over 1500 bits) are left to exact::FacetsOf.
+ as such where they are listed side by side; where two of the five share a point, a third of the
+ arithmetic is enough. Coordinates so far apart that the integers do not fit (over 1500 bits) are
+ left to exact::FacetsOf.
  @throws Error where a number is not finite or the rounding mode is not to nearest. */
 CertifiedDual CertifiedFacets(std::span<const AppliedForce> generators);
 CertifiedDual CertifiedFacets(std::span<const Vector6d> generators);

@@ -2,12 +2,13 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "cguide/numeric/dual_kernels_internal.h"
 #include "cguide/numeric/fp_guard.h"
+#include "cguide/numeric/insertion_order_internal.h"
 #include "cguide/numeric/polar_graph_internal.h"
 
 namespace cguide::numeric {
@@ -17,6 +18,7 @@ struct DualWorkspace::Impl {
   RayTable rays;
   std::vector<Vector6d> units;  // generators, normalised; then their coordinates in the span
   std::vector<int> nonzero, order;
+  std::vector<std::array<int, 3>> births;  // on the plane being added: slot, parents p and q
 };
 
 DualWorkspace::DualWorkspace() : impl_(std::make_unique<Impl>()) {}
@@ -119,10 +121,12 @@ void AddHalfspace(int i, double tolerance, Impl* w) {
       on_plane.push_back(s);
     }
   }
-  graph.Cut(i, [&](int slot, int p, int q) {
-    rays.Grow(graph.num_slots());
+  w->births.clear();
+  graph.Cut(i, [&](int slot, int p, int q) { w->births.push_back({slot, p, q}); });
+  rays.Grow(graph.num_slots());
+  for (const auto& [slot, p, q] : w->births) {
     rays.Set(slot, (rays.value(p) * rays.Get(q) - rays.value(q) * rays.Get(p)).normalized());
-  });
+  }
   for (const int s : outside) rays.Set(s, Vector6d::Zero());
 }
 
@@ -145,8 +149,7 @@ void DualDescription(std::span<const Vector6d> generators, const DualOptions& op
   for (const int i : w->nonzero) {
     if (std::find(span.basis, end, i) == end) w->order.push_back(i);
   }
-  std::mt19937_64 rng(1953);
-  for (std::size_t i = w->order.size(); i > 1; --i) std::swap(w->order[i - 1], w->order[rng() % i]);
+  SortOutermostFirst(w->units, w->nonzero, &w->order);
   for (const int i : w->order) AddHalfspace(i, options.tolerance, w);
   for (int s = 0; s < w->graph.num_slots(); ++s) {
     if (!w->graph.alive(s)) continue;

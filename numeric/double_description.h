@@ -39,7 +39,8 @@ class DualWorkspace {
  rays arising between adjacent rays on either side [Motzkin, Raiffa, Thompson and Thrall 1953;
  minimal generators as in Padberg 1999, ch. 7]. The adjacency graph is kept, so that only rays on
  the new hyperplane are compared. It starts from the simplicial cone of a basis chosen by pivoting;
- the other half-spaces follow in a fixed pseudo-random order.
+ the other half-spaces follow, the outermost generators first: those far from the mean of all in the
+ metric of their second moments, so that linear maps of the generators hardly change the order.
 
  The whole space gives neither facets nor equations; a cone of rank k < 6 gives 6 - k equations.
  Zero and repeated generators are allowed. Floating point with a tolerance: the result carries NO

@@ -5,9 +5,10 @@ namespace cguide::numeric {
 /** The normal y of five vectors of R^6: y.a = det(r0; r1; r2; r3; r4; a) for every a, so y_k is
  (-1)^(k+1) times the minor without column k. By Laplace's expansion: 2x2 minors of rows 0, 1 and of
  rows 2, 3, from them the 4x4 minors of rows 0..3, then row 4. Without division, so that it serves
- doubles and integers. T1 are entries, T2, T4, T5 hold minors of that order. */
+ doubles and integers. T1 are entries, T2, T4, T5 hold minors of that order. For lanes, which are
+ not passed between functions, this form. */
 template <typename T2, typename T4, typename T5, typename T1>
-inline void NormalOfRows(const T1* r0, const T1* r1, const T1* r2, const T1* r3, const T1* r4,
+__attribute__((always_inline)) inline void InlinedNormalOfRows(const T1* r0, const T1* r1, const T1* r2, const T1* r3, const T1* r4,
                          T5* y) {
   // Pairs j < k in lexicographic order.
   static constexpr int kPair[6][6] = {{-1, 0, 1, 2, 3, 4},    {0, -1, 5, 6, 7, 8},
@@ -62,6 +63,12 @@ inline void NormalOfRows(const T1* r0, const T1* r1, const T1* r2, const T1* r3,
     }
     y[k] = sum;
   }
+}
+
+template <typename T2, typename T4, typename T5, typename T1>
+inline void NormalOfRows(const T1* r0, const T1* r1, const T1* r2, const T1* r3, const T1* r4,
+                         T5* y) {
+  InlinedNormalOfRows<T2, T4, T5>(r0, r1, r2, r3, r4, y);
 }
 
 }  // namespace cguide::numeric

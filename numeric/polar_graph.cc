@@ -55,25 +55,21 @@ int PolarGraph::NewSlot() {
   return slot;
 }
 
-void PolarGraph::Push(int slot, int neighbour) {
+void PolarGraph::Widen(int slot) {
   List& list = lists_[slot];
-  if (list.log_capacity < 0 || list.size == 1 << list.log_capacity) {
-    const int log_capacity = list.log_capacity < 0 ? 3 : list.log_capacity + 1;
-    if (static_cast<int>(free_blocks_.size()) <= log_capacity)
-      free_blocks_.resize(log_capacity + 1);
-    std::int32_t begin = static_cast<std::int32_t>(pool_.size());
-    if (auto& blocks = free_blocks_[log_capacity]; !blocks.empty()) {
-      begin = blocks.back();
-      blocks.pop_back();
-    } else {
-      pool_.resize(pool_.size() + (std::size_t{1} << log_capacity));
-    }
-    std::copy_n(pool_.begin() + list.begin, list.size, pool_.begin() + begin);
-    if (list.log_capacity >= 0) free_blocks_[list.log_capacity].push_back(list.begin);
-    list.begin = begin;
-    list.log_capacity = log_capacity;
+  const int log_capacity = list.capacity == 0 ? 3 : std::countr_zero(unsigned(list.capacity)) + 1;
+  if (static_cast<int>(free_blocks_.size()) <= log_capacity) free_blocks_.resize(log_capacity + 1);
+  std::int32_t begin = static_cast<std::int32_t>(pool_.size());
+  if (auto& blocks = free_blocks_[log_capacity]; !blocks.empty()) {
+    begin = blocks.back();
+    blocks.pop_back();
+  } else {
+    pool_.resize(pool_.size() + (std::size_t{1} << log_capacity));
   }
-  pool_[list.begin + list.size++] = neighbour;
+  std::copy_n(pool_.begin() + list.begin, list.size, pool_.begin() + begin);
+  if (list.capacity > 0) free_blocks_[log_capacity - 1].push_back(list.begin);
+  list.begin = begin;
+  list.capacity = 1 << log_capacity;
 }
 
 void PolarGraph::Release(int slot) {
@@ -103,8 +99,7 @@ void PolarGraph::BeginCut(int plane) {
 // The new ray is adjacent to q; its neighbours on the plane follow in Connect. Rays strictly inside
 // keep their adjacencies: the smallest face that holds two of them does not lie in the new plane,
 // and cutting it keeps its dimension.
-int PolarGraph::Bear(int plane, int p, int q, int index_in_p) {
-  (void)index_in_p;
+int PolarGraph::Bear(int plane, int p, int q) {
   const int slot = NewSlot();
   const std::uint64_t *a = planes_.data() + static_cast<std::size_t>(p) * words_,
                       *b = planes_.data() + static_cast<std::size_t>(q) * words_;
@@ -151,57 +146,66 @@ void PolarGraph::FillColumns(int plane) {
 
 // Two rays of the plane are adjacent iff no third ray lies in all planes they share [Fukuda, Prodon
 // 1996, Prop. 7]; such a third ray would lie in the new plane too, so only those are asked.
+//
+// Mostly nothing need be asked. A ray in precisely dimension - 1 planes is "simple": it is extreme,
+// so those are independent, and any dimension - 2 of them meet in a plane of dimension two. Another
+// ray in these is adjacent to it.
 void PolarGraph::Connect(int plane) {
   FillColumns(plane);
+  known_.resize(row_words_);
   for (int row = 0; row < num_rows_; ++row) ConnectRow(row);
   for (const int slot : sides_.on_plane) row_of_slot_[slot] = -1;
 }
 
-// Adjacent rays share planes of rank dimension - 2, so at least that many, the new one among them.
-// Rows that share `needed` others with this one are counted 64 at a time in unary: level[k] holds
-// those found in at least k + 1 of this row's planes so far.
+// Rows that share `needed` planes with the row, the new one not counted, among the rows of a word.
+// They are counted 64 at a time in unary: level k holds those found in at least k of its planes so
+// far.
+std::uint64_t PolarGraph::Sharing(int row, int word, int needed) const {
+  std::uint64_t one = 0, two = 0, three = 0;
+  for (std::int32_t k = row_begin_[row]; k < row_begin_[row + 1]; ++k) {
+    const std::uint64_t column = Column(row_planes_[k])[word];
+    three |= two & column;
+    two |= one & column;
+    one |= column;
+  }
+  return needed == 3 ? three : needed == 2 ? two : needed == 1 ? one : ~std::uint64_t{0};
+}
+
+bool PolarGraph::HaveNoThird(int row, int other) const {
+  for (int word = 0; word < row_words_; ++word) {
+    std::uint64_t held = RowsOf(word);
+    for (std::int32_t k = row_begin_[row]; k < row_begin_[row + 1]; ++k) {
+      const std::uint64_t* const column = Column(row_planes_[k]);
+      if (column[other / 64] >> other % 64 & 1) held &= column[word];
+    }
+    if (word == row / 64) held &= ~(std::uint64_t{1} << row % 64);
+    if (word == other / 64) held &= ~(std::uint64_t{1} << other % 64);
+    if (held != 0) return false;
+  }
+  return true;
+}
+
+// Rows behind this one that are adjacent to it and are not known to be. Adjacent rays share planes
+// of rank dimension - 2, so at least that many, the new one among them.
 void PolarGraph::ConnectRow(int row) {
   const int slot = sides_.on_plane[row];
   const int needed = std::max(0, dimension_ - 3);
-  const std::int32_t *const first = row_planes_.data() + row_begin_[row], *const last =
-                                                                              row_planes_.data() +
-                                                                              row_begin_[row + 1];
-  const int begin_word = row / 64;
-  scratch_.assign(2 * static_cast<std::size_t>(row_words_), 0);
-  std::uint64_t *const known = scratch_.data(), *const held = known + row_words_;
+  const bool is_simple = IsSimple(row);
   if (row < num_old_rows_) {
+    std::fill(known_.begin(), known_.end(), 0);
     for (int k = 0; k < lists_[slot].size; ++k) {
       const int r = row_of_slot_[Neighbours(slot)[k]];
-      if (r >= 0) known[r / 64] |= std::uint64_t{1} << r % 64;
+      if (r >= 0) known_[r / 64] |= std::uint64_t{1} << r % 64;
     }
+  } else if (row == num_old_rows_) {
+    std::fill(known_.begin(), known_.end(), 0);
   }
-  for (int w = begin_word; w < row_words_; ++w) {
-    std::uint64_t level[4] = {~std::uint64_t{0}, 0, 0, 0};  // level[k]: in at least k
-    for (const std::int32_t* j = first; j != last; ++j) {
-      const std::uint64_t column = columns_[static_cast<std::size_t>(*j) * row_words_ + w];
-      level[3] |= level[2] & column;
-      level[2] |= level[1] & column;
-      level[1] |= column;
-    }
-    std::uint64_t candidates = level[needed] & ~known[w];
-    if (w == begin_word) candidates &= row % 64 == 63 ? 0 : ~std::uint64_t{0} << (row % 64 + 1);
-    if (w == row_words_ - 1 && num_rows_ % 64 != 0) {
-      candidates &= (std::uint64_t{1} << num_rows_ % 64) - 1;
-    }
+  for (int word = row / 64; word < row_words_; ++word) {
+    std::uint64_t candidates = Sharing(row, word, needed) & RowsOf(word) & ~known_[word];
+    if (word == row / 64) candidates &= ~std::uint64_t{1} << row % 64;
     for (; candidates != 0; candidates &= candidates - 1) {
-      const int other = 64 * w + std::countr_zero(candidates);
-      const std::uint64_t bit = candidates & -candidates;
-      std::fill_n(held, row_words_, ~std::uint64_t{0});
-      if (num_rows_ % 64 != 0) held[row_words_ - 1] = (std::uint64_t{1} << num_rows_ % 64) - 1;
-      for (const std::int32_t* j = first; j != last; ++j) {
-        const std::uint64_t* const column =
-            columns_.data() + static_cast<std::size_t>(*j) * row_words_;
-        if ((column[w] & bit) == 0) continue;
-        for (int v = 0; v < row_words_; ++v) held[v] &= column[v];
-      }
-      held[row / 64] &= ~(std::uint64_t{1} << row % 64);
-      held[w] &= ~bit;
-      if (std::any_of(held, held + row_words_, [](std::uint64_t x) { return x != 0; })) continue;
+      const int other = 64 * word + std::countr_zero(candidates);
+      if (!is_simple && !IsSimple(other) && !HaveNoThird(row, other)) continue;
       Push(slot, sides_.on_plane[other]);
       Push(sides_.on_plane[other], slot);
     }

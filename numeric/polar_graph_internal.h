@@ -41,14 +41,14 @@ class PolarGraph {
   Sides* sides() { return &sides_; }
 
   /** Adds a half-space. `born(slot, p, q)` is called for every new ray, which lies on the face of
-   p (outside) and q (inside), whose slots stay intact until Cut returns; `grow(n)` before the
-   number of slots rises to n. Afterwards rays outside are gone. */
+   p (outside) and q (inside). Afterwards rays outside are gone; the planes of their slots can be
+   read until the next Cut. */
   template <typename Born>
   void Cut(int plane, const Born& born);
 
  private:
   struct List {
-    std::int32_t begin = 0, size = 0, log_capacity = -1;
+    std::int32_t begin = 0, size = 0, capacity = 0;  // capacity: none or a power of two from 8 on
   };
   enum class Side : std::int8_t { kInside, kOnPlane, kOutside };
 
@@ -57,14 +57,30 @@ class PolarGraph {
     planes_[static_cast<std::size_t>(slot) * words_ + plane / 64] |= std::uint64_t{1} << plane % 64;
   }
   std::int32_t* Neighbours(int slot) { return pool_.data() + lists_[slot].begin; }
-  void Push(int slot, int neighbour);
+  void Push(int slot, int neighbour) {
+    List& list = lists_[slot];
+    if (list.size == list.capacity) Widen(slot);
+    pool_[static_cast<std::size_t>(list.begin) + list.size++] = neighbour;
+  }
+  void Widen(int slot);
   void Release(int slot);
-  int Bear(int plane, int p, int q, int index_in_p);
+  int Bear(int plane, int p, int q);
   void BeginCut(int plane);
   void EndCut(int plane);
   void Connect(int plane);
   void FillColumns(int plane);
   void ConnectRow(int row);
+  std::uint64_t Sharing(int row, int word, int needed) const;
+  bool HaveNoThird(int row, int other) const;
+  bool IsSimple(int row) const { return row_begin_[row + 1] - row_begin_[row] == dimension_ - 2; }
+  const std::uint64_t* Column(int plane) const {
+    return columns_.data() + static_cast<std::size_t>(plane) * row_words_;
+  }
+  /** The bits of a word that stand for rows. */
+  std::uint64_t RowsOf(int word) const {
+    const int rows = num_rows_ - 64 * word;
+    return rows >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << rows) - 1;
+  }
 
   int words_ = 0, dimension_ = 0, num_slots_ = 0;
   std::vector<std::uint64_t> planes_;
@@ -79,7 +95,7 @@ class PolarGraph {
   // Of the rays on the plane being added ("rows"): planes of each, and per plane its rows as bits.
   int num_rows_ = 0, num_old_rows_ = 0, row_words_ = 0;
   std::vector<std::int32_t> row_planes_, row_begin_, row_of_slot_;
-  std::vector<std::uint64_t> columns_, scratch_;
+  std::vector<std::uint64_t> columns_, known_;
 };
 
 template <typename Born>
@@ -93,7 +109,7 @@ void PolarGraph::Cut(int plane, const Born& born) {
     const int degree = lists_[p].size;
     for (int k = 0; k < degree; ++k) {
       const int q = Neighbours(p)[k];
-      if (side_[q] == Side::kInside) born(Bear(plane, p, q, k), p, q);
+      if (side_[q] == Side::kInside) born(Bear(plane, p, q), p, q);
     }
   }
   EndCut(plane);

@@ -95,8 +95,19 @@ inline Wide<A + B> operator*(const Wide<A>& a, const Wide<B>& b) {
                         (a.Load(0) & b_negative));
   } else {
     static_assert(A >= B);
-    if constexpr (B == 1) {
-      result.w[A] = mpn_mul_1(result.w, a.w, A, b.w[0]);
+    if constexpr (B <= 3) {  // few words: no call
+      for (int i = 0; i < A; ++i) result.w[i] = 0;
+#pragma GCC unroll 3
+      for (int j = 0; j < B; ++j) {
+        std::uint64_t carry = 0;
+#pragma GCC unroll 7
+        for (int i = 0; i < A; ++i) {
+          const UInt128 sum = UInt128{a.w[i]} * b.w[j] + result.w[i + j] + carry;
+          result.w[i + j] = static_cast<std::uint64_t>(sum);
+          carry = static_cast<std::uint64_t>(sum >> 64);
+        }
+        result.w[A + j] = carry;
+      }
     } else {
       mpn_mul(result.w, a.w, A, b.w, B);
     }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "cguide/exact/linear_algebra.h"
@@ -28,9 +29,9 @@ constexpr int kRepeats = 5;  // ours: the median; peers are called once, Qhull k
 struct Cell {
   std::vector<double> flt, certified, normals, cdd, qhull, ppl;
   std::vector<double> certified_ratio, cdd_ratio, qhull_ratio, ppl_ratio;
-  std::vector<double> facets;
+  std::vector<double> facets, float_facets, cdd_facets;
   std::vector<double> float_per_facet, certified_per_facet;  // of lists that are not empty
-  // Only of stances where the other list has the right number of facets.
+  // Only of stances where the other list has the same facets.
   std::vector<double> certified_ratio_right, cdd_ratio_right, cdd_certified_right;
   int float_differs = 0, cdd_differs = 0, cdd_failed = 0, wrong = 0, checked = 0;
 };
@@ -64,64 +65,123 @@ bool SameFacets(const exact::HalfspaceCone& ours, const peers::PplFacets& theirs
   return ours.equations.empty() ? a == b : a.size() == b.size();
 }
 
-void MeasureSet(const WrenchSet& set, bool with_ppl, Cell* cell) {
-  std::vector<Vector6d> wrenches;
-  std::vector<std::vector<mpz_class>> integers;
-  for (const AppliedForce& g : set.generators) {
-    wrenches.emplace_back();
-    wrenches.back() << g.u, g.p.cross(g.u);
-    if (with_ppl) integers.push_back(IntegerRow(g));
+/** Whether the lists have equally many facets, of which each is nearest to another one of the exact
+ list and near it. */
+bool AreSame(const std::vector<Vector6d>& list, const std::vector<Vector6d>& exact) {
+  constexpr double kNear = 1e-6;  // far above what rounding moves a normal that is not ill-posed
+  if (list.size() != exact.size()) return false;
+  std::vector<bool> met(exact.size(), false);
+  for (const Vector6d& h : list) {
+    const Vector6d unit = h.normalized();
+    const auto nearer = [&](const Vector6d& a, const Vector6d& b) {
+      return (a - unit).squaredNorm() < (b - unit).squaredNorm();
+    };
+    const auto nearest = std::min_element(exact.begin(), exact.end(), nearer);
+    const auto k = static_cast<std::size_t>(nearest - exact.begin());
+    if (met[k] || !((*nearest - unit).norm() < kNear)) return false;
+    met[k] = true;
   }
-  numeric::DualWorkspace workspace;
-  numeric::CertifiedDualWorkspace certified_workspace;
+  return true;
+}
+
+std::vector<Vector6d> Rounded(const exact::HalfspaceCone& cone) {
+  std::vector<Vector6d> normals;
+  for (const VectorXq& h : cone.facets) {
+    Rational largest = 0;
+    for (const Rational& x : h) largest = std::max<Rational>(largest, abs(x));
+    Vector6d normal;
+    for (int k = 0; k < 6; ++k) normal[k] = NearestDouble(h[k] / largest);
+    normals.push_back(normal.normalized());
+  }
+  return normals;
+}
+
+/** Lists of one stance. */
+struct Lists {
+  std::vector<Vector6d> wrenches;
   numeric::ConeFacets flt;
   numeric::CertifiedDual dual;
   exact::HalfspaceCone normals;
-  cell->flt.push_back(MedianOf([&] { DualDescription(wrenches, {}, &workspace, &flt); }));
+  std::vector<Vector6d> truth;  // normals, rounded
+};
+
+void MeasureOurs(const WrenchSet& set, Lists* lists, Cell* cell) {
+  numeric::DualWorkspace workspace;
+  numeric::CertifiedDualWorkspace certified_workspace;
+  cell->flt.push_back(
+      MedianOf([&] { DualDescription(lists->wrenches, {}, &workspace, &lists->flt); }));
   cell->certified.push_back(
-      MedianOf([&] { CertifiedFacets(set.generators, &certified_workspace, &dual); }));
+      MedianOf([&] { CertifiedFacets(set.generators, &certified_workspace, &lists->dual); }));
   cell->normals.push_back(MedianOf([&] {
-    CertifiedFacets(set.generators, &certified_workspace, &dual);
-    normals = ExactFacets(set.generators, dual);
+    CertifiedFacets(set.generators, &certified_workspace, &lists->dual);
+    lists->normals = ExactFacets(set.generators, lists->dual);
   }));
-  cell->facets.push_back(static_cast<double>(dual.facets.size()));
-  cell->float_differs += flt.facets.size() != dual.facets.size();
+  lists->truth = Rounded(lists->normals);
+  const auto of_float = static_cast<double>(lists->flt.facets.size()),
+             of_exact = static_cast<double>(lists->dual.facets.size());
   const double base = cell->flt.back();
+  cell->facets.push_back(of_exact);
+  cell->float_facets.push_back(of_float);
   cell->certified_ratio.push_back(cell->certified.back() / base);
-  if (flt.facets.size() == dual.facets.size()) {
+  if (AreSame(lists->flt.facets, lists->truth)) {
     cell->certified_ratio_right.push_back(cell->certified_ratio.back());
+  } else {
+    ++cell->float_differs;
   }
-  if (!flt.facets.empty() && !dual.facets.empty()) {
-    cell->float_per_facet.push_back(base / static_cast<double>(flt.facets.size()));
-    cell->certified_per_facet.push_back(cell->certified.back() / cell->facets.back());
-  }
+  if (of_float == 0 || of_exact == 0) return;
+  cell->float_per_facet.push_back(base / of_float);
+  cell->certified_per_facet.push_back(cell->certified.back() / of_exact);
+}
+
+void MeasureCdd(const Lists& lists, Cell* cell) {
   peers::FacetList cdd;
-  const double cdd_time = MicrosecondsOf(1, [&] { cdd = peers::CddFacets(wrenches); });
+  const double time = MicrosecondsOf(1, [&] { cdd = peers::CddFacets(lists.wrenches); });
+  const bool right = !cdd.failed && AreSame(cdd.facets, lists.truth);
   if (!cdd.failed) {  // "numerically inconsistent" comes early and is no time for a list
-    cell->cdd.push_back(cdd_time);
-    cell->cdd_ratio.push_back(cdd_time / base);
+    cell->cdd.push_back(time);
+    cell->cdd_ratio.push_back(time / cell->flt.back());
+    cell->cdd_facets.push_back(static_cast<double>(cdd.facets.size()));
   }
-  if (!cdd.failed && cdd.facets.size() == dual.facets.size()) {
-    cell->cdd_ratio_right.push_back(cdd_time / base);
-    cell->cdd_certified_right.push_back(cdd_time / cell->certified.back());
+  if (right) {
+    cell->cdd_ratio_right.push_back(time / cell->flt.back());
+    cell->cdd_certified_right.push_back(time / cell->certified.back());
   }
   cell->cdd_failed += cdd.failed;
-  cell->cdd_differs += cdd.failed || cdd.facets.size() != dual.facets.size();
+  cell->cdd_differs += !right;
+}
+
+// Of the section of the cone by a plane, where that is bounded.
+void MeasureQhull(const Lists& lists, Cell* cell) {
   Vector6d w = Vector6d::Zero();
-  for (const auto& facet : dual.facets) w -= facet.normal;
+  for (const auto& facet : lists.dual.facets) w -= facet.normal;
   std::vector<Vector6d> hull;
-  bool applies = !dual.facets.empty();
-  for (const Vector6d& a : wrenches) applies = applies && w.dot(a) > 1e-9;
-  if (applies && peers::QhullFacets(wrenches, w, &hull)) {
-    cell->qhull.push_back(MedianOf([&] { peers::QhullFacets(wrenches, w, &hull); }));
-    cell->qhull_ratio.push_back(cell->qhull.back() / base);
-  }
-  if (!with_ppl) return;
+  bool applies = !lists.dual.facets.empty();
+  for (const Vector6d& a : lists.wrenches) applies = applies && w.dot(a) > 1e-9;
+  if (!applies || !peers::QhullFacets(lists.wrenches, w, &hull)) return;
+  cell->qhull.push_back(MedianOf([&] { peers::QhullFacets(lists.wrenches, w, &hull); }));
+  cell->qhull_ratio.push_back(cell->qhull.back() / cell->flt.back());
+}
+
+void MeasurePpl(const WrenchSet& set, const Lists& lists, Cell* cell) {
+  std::vector<std::vector<mpz_class>> integers;
+  for (const AppliedForce& g : set.generators) integers.push_back(IntegerRow(g));
   peers::PplFacets ppl;
   cell->ppl.push_back(MicrosecondsOf(1, [&] { ppl = peers::PplFacetsOf(integers, 6); }));
   cell->ppl_ratio.push_back(cell->ppl.back() / cell->normals.back());
-  cell->wrong += !SameFacets(normals, ppl);
+  cell->wrong += !SameFacets(lists.normals, ppl);
   ++cell->checked;
+}
+
+void MeasureSet(const WrenchSet& set, bool with_ppl, Cell* cell) {
+  Lists lists;
+  for (const AppliedForce& g : set.generators) {
+    lists.wrenches.emplace_back();
+    lists.wrenches.back() << g.u, g.p.cross(g.u);
+  }
+  MeasureOurs(set, &lists, cell);
+  MeasureCdd(lists, cell);
+  MeasureQhull(lists, cell);
+  if (with_ppl) MeasurePpl(set, lists, cell);
 }
 
 void PrintRatio(std::FILE* out, const char* name, const std::vector<double>& x) {
@@ -173,9 +233,10 @@ void PrintMedian(std::FILE* out, const std::vector<double>& x) {
 
 void PrintCell(std::FILE* out, const char* name, int sides, int patches, const Cell& cell) {
   std::fprintf(out,
-               "%-7s %5d %7d %6.0f | %7.0f %7.0f %7.0f | %9.0f %7.0f %10.0f | %d/%d %d/%d(%d) "
-               "%d/%d |",
-               name, sides, patches, Median(cell.facets), Median(cell.flt), Median(cell.certified),
+               "%-7s %5d %7d %6.0f %6.0f %6.0f | %7.0f %7.0f %7.0f | %9.0f %7.0f %10.0f | "
+               "%d/%d %d/%d(%d) %d/%d |",
+               name, sides, patches, Median(cell.facets), Median(cell.float_facets),
+               Median(cell.cdd_facets), Median(cell.flt), Median(cell.certified),
                Median(cell.normals), Median(cell.cdd), Median(cell.qhull), Median(cell.ppl),
                kSets - cell.float_differs, kSets, kSets - cell.cdd_differs, kSets, cell.cdd_failed,
                cell.wrong, cell.checked);
@@ -208,19 +269,20 @@ void PrintTotals(std::FILE* out, const char* name, const Totals& totals) {
 
 }  // namespace
 
-void ReportDual(std::FILE* out) {
+void ReportDual(std::FILE* out, const std::string& only) {
   peers::RestoreRounding();
   std::fprintf(
       out,
       "Facets of wrench cones: medians of thread CPU time (us) over %d stances a cell.\n"
-      "Right: lists of the exact one's length, of all stances. Where the float list is right on "
-      "none,\n"
-      "it is mostly much shorter: its time buys fewer facets, and the times a facet compare like\n"
+      "Right: lists of the exact cone's facets, as many and each normal within 1e-6, of all\n"
+      "stances. Where a list is not right it is mostly much shorter (facets: of the exact cone, "
+      "of\n"
+      "the float list, of cdd's): its time buys fewer facets, and the times a facet compare like\n"
       "with like. A dash: no stance of the cell has such a list.\n"
       "cdd's times are of the calls that ended without an error, be the list right or not.\n"
-      "%-7s %5s %7s %6s | %7s %7s %7s | %9s %7s %10s | %s | %s\n",
-      kSets, "storage", "sides", "patches", "facets", "float", "certif.", "+normals", "cdd",
-      "qhull", "ppl", "float right, cdd right (failed), ours wrong/checked",
+      "%-7s %5s %7s %6s %6s %6s | %7s %7s %7s | %9s %7s %10s | %s | %s\n",
+      kSets, "storage", "sides", "patches", "facets", "float", "cdd", "float", "certif.",
+      "+normals", "cdd", "qhull", "ppl", "float right, cdd right (failed), ours wrong/checked",
       "certified/float, where float is right, us a facet: float, certified, cdd/float, where cdd "
       "is right, cdd/certified there");
   for (const Storage storage : {Storage::kSnapped, Storage::kRounded}) {
@@ -228,6 +290,9 @@ void ReportDual(std::FILE* out) {
     Totals totals;
     for (const int sides : {4, 8}) {
       for (const int patches : {1, 2, 3, 4, 8}) {
+        const std::string cell_name =
+            std::string(name) + "-" + std::to_string(sides) + "-" + std::to_string(patches);
+        if (!only.empty() && only != cell_name) continue;
         numeric::Rng rng(1000 + 10 * patches + sides);
         Cell cell;
         for (int i = 0; i < kSets; ++i) {
@@ -237,7 +302,7 @@ void ReportDual(std::FILE* out) {
         AddCell(cell, &totals);
       }
     }
-    PrintTotals(out, name, totals);
+    if (totals.stances > 0) PrintTotals(out, name, totals);
   }
 }
 

@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "cguide/numeric/float_normals_internal.h"
+#include "cguide/numeric/insertion_order_internal.h"
+#include "cguide/numeric/minors_internal.h"
+#include "cguide/numeric/sampling.h"
+
+namespace cguide::numeric {
+namespace {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+Vector6d RandomRow(Rng& rng) {
+  Vector6d row;
+  for (double& x : row) x = Normal(rng);
+  return row;
+}
+
+std::vector<int> Order(const std::vector<Vector6d>& rows) {
+  std::vector<int> all(rows.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<int> order = all;
+  SortOutermostFirst(rows, all, &order);
+  return order;
+}
+
+}  // namespace
+
+TEST_CASE("the row along the mean is the last one, and linear maps leave the order as it is") {
+  Rng rng(1971);
+  for (int round = 0; round < 100; ++round) {
+    std::vector<Vector6d> rows;
+    Vector6d sum = Vector6d::Zero();
+    for (int i = 0; i < 20; ++i) {
+      rows.push_back(RandomRow(rng));
+      rows.back()[0] = 1 + std::abs(rows.back()[0]);
+      sum += rows.back();
+    }
+    rows.push_back(sum / 20);
+    const std::vector<int> order = Order(rows);
+    CHECK(order.back() == 20);
+    Matrix6d map = Matrix6d::Identity();
+    for (int k = 0; k < 6; ++k) map.col(k) += 0.3 * RandomRow(rng);
+    for (Vector6d& row : rows) row = (map * row).eval();
+    CHECK(Order(rows) == order);
+  }
+}
+
+TEST_CASE("every index is kept, whatever the rows") {
+  Rng rng(1972);
+  std::vector<Vector6d> rows;
+  CHECK(Order(rows).empty());
+  for (const double size : {0.0, 1e-320, 1.0, 1e200}) {
+    for (int i = 0; i < 4; ++i) rows.push_back(size * RandomRow(rng));
+  }
+  for (int i = 0; i < 3; ++i) rows.push_back(Vector6d::Unit(2));
+  for (int round = 0; round < 2; ++round) {
+    std::vector<int> order = Order(rows);
+    CHECK(order == Order(rows));
+    std::sort(order.begin(), order.end());
+    std::vector<int> all(rows.size());
+    std::iota(all.begin(), all.end(), 0);
+    CHECK(order == all);
+    rows.erase(rows.begin() + 4, rows.end() - 3);  // zeros and one direction
+  }
+}
+
+TEST_CASE("normals by lanes are those one by one, to the bit") {
+  Rng rng(1973);
+  std::vector<Vector6d> rows;
+  for (int i = 0; i < 30; ++i) rows.push_back(RandomRow(rng));
+  for (const std::size_t count : {0, 1, 7, 8, 9, 50}) {
+    FloatNormals normals;
+    normals.sets.resize(count);
+    for (auto& set : normals.sets) {
+      for (std::int32_t& row : set) row = static_cast<std::int32_t>(rng() % 30);
+    }
+    normals.Compute(rows);
+    REQUIRE(normals.normals.size() == count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto r = [&](int k) { return rows[normals.sets[i][k]].data(); };
+      Vector6d y;
+      NormalOfRows<double, double, double>(r(0), r(1), r(2), r(3), r(4), y.data());
+      CHECK(normals.normals[i] == y);
+      CHECK(normals.largest[i] == y.cwiseAbs().maxCoeff());
+      const double* const a = r(5);
+      CHECK(normals.products[i] == ((y[0] * a[0] + y[1] * a[1]) + (y[2] * a[2] + y[3] * a[3])) +
+                                       (y[4] * a[4] + y[5] * a[5]));
+    }
+  }
+}
+
+}  // namespace cguide::numeric
