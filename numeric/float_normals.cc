@@ -1,7 +1,6 @@
-#include "cguide/numeric/float_normals_internal.h"
-
 #include <algorithm>
 
+#include "cguide/numeric/float_normals_internal.h"
 #include "cguide/numeric/fp_guard.h"
 #include "cguide/numeric/lanes_internal.h"
 #include "cguide/numeric/minors_internal.h"
@@ -25,8 +24,8 @@ CGUIDE_INLINE void NormalsKernel(const Vector6d* rows, FloatNormals* result) {
     for (int j = 0; j < 36; ++j) r[j] = Load<V>(entry[j]);
     InlinedNormalOfRows<V, V, V>(r, r + 6, r + 12, r + 18, r + 24, y);
     const V* const a = r + 30;
-    const V product = ((y[0] * a[0] + y[1] * a[1]) + (y[2] * a[2] + y[3] * a[3])) +
-                      (y[4] * a[4] + y[5] * a[5]);
+    const V product =
+        ((y[0] * a[0] + y[1] * a[1]) + (y[2] * a[2] + y[3] * a[3])) + (y[4] * a[4] + y[5] * a[5]);
     V largest = Absolute(y[0]);
     for (int k = 1; k < 6; ++k) largest = Larger(largest, Absolute(y[k]));
     for (int k = 0; k < 6; ++k) Store(y[k], entry[k]);

@@ -8,8 +8,9 @@ namespace cguide::numeric {
  doubles and integers. T1 are entries, T2, T4, T5 hold minors of that order. For lanes, which are
  not passed between functions, this form. */
 template <typename T2, typename T4, typename T5, typename T1>
-__attribute__((always_inline)) inline void InlinedNormalOfRows(const T1* r0, const T1* r1, const T1* r2, const T1* r3, const T1* r4,
-                         T5* y) {
+__attribute__((always_inline)) inline void InlinedNormalOfRows(const T1* r0, const T1* r1,
+                                                               const T1* r2, const T1* r3,
+                                                               const T1* r4, T5* y) {
   // Pairs j < k in lexicographic order.
   static constexpr int kPair[6][6] = {{-1, 0, 1, 2, 3, 4},    {0, -1, 5, 6, 7, 8},
                                       {1, 5, -1, 9, 10, 11},  {2, 6, 9, -1, 12, 13},
