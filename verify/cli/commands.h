@@ -45,7 +45,7 @@ struct PlanArguments {
   double extension = 0;           ///< 0: the planner's default
   std::string link = "straight";  ///< straight, flow
   int shortcut_rounds = 120;
-  int corner_cuts = 60;
+  int corner_cuts = 0;
   std::string stats;    ///< file for times and counters, or empty
   std::string roadmap;  ///< of prm: file that is read, if it is there, and written; or empty
 };

@@ -68,7 +68,8 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
   c->add_option("--shortcuts", a->shortcut_rounds, "Rounds of shortcutting")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
-  c->add_option("--cuts", a->corner_cuts, "Corners that are tried to be cut after that")
+  c->add_option("--cuts", a->corner_cuts,
+                "Then so many corners are tried to be cut: shorter, with less room beside them")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
   c->add_option("--stats", a->stats, "File for times, counters and the guide's quality (JSON)");
