@@ -161,6 +161,35 @@ inline bool MakeParallelogram(const Eigen::Vector3d& p, const Eigen::Vector3d& a
   return EqualSums(p, a, b, c) || EqualSums(p, b, a, c) || EqualSums(p, c, a, b);
 }
 
+/** Whether p - a and b - c are along the same axis and b is not c: p is an affine combination of a,
+ b and c, as are the corners of a wall whose heights were rounded. */
+inline bool AreAlongAnAxis(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                           const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    if (p[i] == a[i] && p[j] == a[j] && b[i] == c[i] && b[j] == c[j]) return b[k] != c[k];
+  }
+  return false;
+}
+
+/** Whether p is for certain an affine combination of a, b, c: the three are not on a line and the
+ four agree in one coordinate, or make a parallelogram, or a trapezoid with two sides along an axis.
+ */
+inline bool IsAffineCombination(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  if (MakeParallelogram(p, a, b, c)) return true;
+  if (AreAlongAnAxis(p, a, b, c) || AreAlongAnAxis(p, b, a, c) || AreAlongAnAxis(p, c, a, b)) {
+    return true;
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (a[k] == p[k] && b[k] == p[k] && c[k] == p[k] &&
+        NotOnALine(a, b, c, (k + 1) % 3, (k + 2) % 3)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /** Whether the ray is certain to be in the planes of all forces at the point of generator `begin`,
  as it is in those of three that are independent; the ends of those that it holds. */
 template <int E>
@@ -242,9 +271,8 @@ bool CertifiedRun<E>::HoldsForceOf(int i, int slot) const {
 }
 
 /** Whether the ray is certain to be in the plane of generator i as it is in those of the same force
- at other points. Along the ray the moment of a force is affine in the point: three points suffice
- that are not on a line and agree with the fourth in one coordinate, or make a parallelogram with
- it. */
+ at three points of which its point is an affine combination: along the ray the moment of a force is
+ affine in the point. */
 template <int E>
 bool CertifiedRun<E>::HoldsForceAbout(int i, int slot) const {
   if (w_.force_of.empty()) return false;
@@ -253,19 +281,11 @@ bool CertifiedRun<E>::HoldsForceAbout(int i, int slot) const {
   for (int j = 0; j < n_ && size < kMost; ++j) {
     if (w_.force_of[j] == w_.force_of[i] && w_.graph.Holds(j, slot)) held[size++] = j;
   }
-  const auto& points = w_.points;
-  const Eigen::Vector3d& p = points[i];
+  const auto& p = w_.points;
   for (int x = 0; x < size; ++x) {
     for (int y = 0; y < x; ++y) {
       for (int z = 0; z < y; ++z) {
-        const Eigen::Vector3d &a = points[held[x]], &b = points[held[y]], &c = points[held[z]];
-        if (MakeParallelogram(p, a, b, c)) return true;
-        for (int k = 0; k < 3; ++k) {
-          if (a[k] == p[k] && b[k] == p[k] && c[k] == p[k] &&
-              NotOnALine(a, b, c, (k + 1) % 3, (k + 2) % 3)) {
-            return true;
-          }
-        }
+        if (IsAffineCombination(p[i], p[held[x]], p[held[y]], p[held[z]])) return true;
       }
     }
   }

@@ -23,7 +23,9 @@ using testing::WrenchSet;
 
 constexpr int kSets = 5;     // a cell
 constexpr int kPplSets = 2;  // of them, for the slowest
-constexpr int kRepeats = 5;  // ours: the median; peers are called once, Qhull kRepeats times
+// Ours: the median of so many calls, floats and certified in turn, so that a change of the
+// machine's speed is both's; Qhull likewise, the other peers are called once.
+constexpr int kRepeats = 11;
 
 /** Times in microseconds, one a set; NaN (nothing) where a peer does not apply. */
 struct Cell {
@@ -108,10 +110,15 @@ struct Lists {
 void MeasureOurs(const WrenchSet& set, Lists* lists, Cell* cell) {
   numeric::DualWorkspace workspace;
   numeric::CertifiedDualWorkspace certified_workspace;
-  cell->flt.push_back(
-      MedianOf([&] { DualDescription(lists->wrenches, {}, &workspace, &lists->flt); }));
-  cell->certified.push_back(
-      MedianOf([&] { CertifiedFacets(set.generators, &certified_workspace, &lists->dual); }));
+  std::vector<double> flt, certified;
+  for (int i = 0; i < kRepeats; ++i) {
+    flt.push_back(
+        MicrosecondsOf(1, [&] { DualDescription(lists->wrenches, {}, &workspace, &lists->flt); }));
+    certified.push_back(MicrosecondsOf(
+        1, [&] { CertifiedFacets(set.generators, &certified_workspace, &lists->dual); }));
+  }
+  cell->flt.push_back(Median(flt));
+  cell->certified.push_back(Median(certified));
   cell->normals.push_back(MedianOf([&] {
     CertifiedFacets(set.generators, &certified_workspace, &lists->dual);
     lists->normals = ExactFacets(set.generators, lists->dual);

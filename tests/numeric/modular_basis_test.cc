@@ -34,28 +34,4 @@ TEST_CASE("vectors are taken modulo a prime iff they are independent of those be
   CHECK(left > 2000);
 }
 
-TEST_CASE("products and sums of integers of fixed width are those of integers") {
-  Rng rng(1970);
-  const auto check = [&](auto a, auto b) {
-    for (auto* words : {a.w + 0}) {
-      for (std::size_t i = 0; i < sizeof(a.w) / sizeof(a.w[0]); ++i) {
-        words[i] = rng() % 3 == 0 ? (rng() % 2 == 0 ? ~mp_limb_t{0} : 0) : rng();
-      }
-    }
-    for (auto& word : b.w) word = rng() % 3 == 0 ? (rng() % 2 == 0 ? ~mp_limb_t{0} : 0) : rng();
-    REQUIRE(ToInteger(a * b) == ToInteger(a) * ToInteger(b));
-  };
-  for (int round = 0; round < 5000; ++round) {
-    check(Wide<1>{}, Wide<1>{});
-    check(Wide<2>{}, Wide<1>{});
-    check(Wide<2>{}, Wide<2>{});
-    check(Wide<4>{}, Wide<2>{});
-    check(Wide<4>{}, Wide<3>{});
-    check(Wide<6>{}, Wide<3>{});
-    check(Wide<7>{}, Wide<2>{});
-    check(Wide<5>{}, Wide<5>{});
-    check(Wide<8>{}, Wide<4>{});
-  }
-}
-
 }  // namespace cguide::numeric

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "cguide/exact/core/rational.h"
+#include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/certified_sides_internal.h"
 #include "cguide/numeric/minors_internal.h"
 #include "cguide/numeric/sampling.h"
@@ -178,6 +179,35 @@ TEST_CASE("parallelograms are told exactly from those that miss by a last bit") 
     fine[rng() % 3] += std::ldexp(1.0, -1 - static_cast<int>(rng() % 2));
     REQUIRE_FALSE((fine != a && MakeParallelogram(p, fine, b, c)));
   }
+}
+
+TEST_CASE("affine combinations of three points are told from points off their plane or line") {
+  Rng rng(1974);
+  const auto small = [&] { return std::floor(Uniform(rng) * 3) - 1; };
+  const auto point = [&] {
+    Eigen::Vector3d p(small(), small(), small());
+    if (rng() % 4 == 0) p[rng() % 3] += std::ldexp(small(), -50);
+    return p;
+  };
+  int told = 0, trapezoids = 0;
+  for (int round = 0; round < 200000; ++round) {
+    const Eigen::Vector3d p = point(), a = point(), b = point(), c = point();
+    if (!IsAffineCombination(p, a, b, c)) continue;
+    ++told;
+    trapezoids += AreAlongAnAxis(p, a, b, c) && !MakeParallelogram(p, a, b, c);
+    // p - c is in the span of a - c and b - c.
+    std::vector<VectorXq> span;
+    for (const Eigen::Vector3d& q : {a, b, p}) {
+      VectorXq v(3);
+      for (int k = 0; k < 3; ++k) v[k] = Lift(q[k]) - Lift(c[k]);
+      span.push_back(v);
+    }
+    const int with = exact::Rank(span);
+    span.pop_back();
+    REQUIRE(with == exact::Rank(span));
+  }
+  CHECK(told > 10000);
+  CHECK(trapezoids > 1000);
 }
 
 }  // namespace cguide::numeric
