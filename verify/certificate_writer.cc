@@ -177,6 +177,16 @@ void Writer::Write(const Node& node) {
   *this << "{";
   Separations("apart", node.apart, &between);
   Separations("self_apart", node.self_apart, &between);
+  if (!node.above.empty()) {
+    *this << between << "\"above\":";
+    List(node.above, [this](const check::SharedPlane& shared) {
+      *this << "[";
+      Write(shared.plane);
+      for (const int shape : shared.shapes) *this << "," << shape;
+      *this << "]";
+    });
+    between = ",";
+  }
   if (node.balance) {
     *this << between << "\"balance\":";
     Write(*node.balance);

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <tuple>
 
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/collision_internal.h"
 #include "cguide/numeric/gjk_internal.h"
 #include "cguide/verify/moving_shape_internal.h"
+#include "cguide/verify/piece_tree_internal.h"
 
 namespace cguide::verify {
 
@@ -21,11 +23,14 @@ using numeric::World;
 
 namespace {
 
-/** Two things to keep apart: a shape and a piece, or (self) two shapes. */
+/** Two things to keep apart: a shape and a piece, or (self) two shapes; or a shape and all pieces
+ below a node of the tree. */
 struct Item {
   int shape = -1;
   int other = -1;
   bool self = false;
+  int node = -1;
+  double way = 0;  ///< squared, from the middle of the shape's box to the piece's box
   Vector3d n_W = Vector3d::Zero();  ///< the direction that came nearest to a proof; zero: none
 };
 
@@ -34,25 +39,11 @@ struct Task {
   std::vector<Item> items;
 };
 
-/** n.x over a placed convex set, at most; |n| <= 1 + 8 u. The rounding of this line is within
- s.error (item 4 at PlacementError). */
-double HighestStatic(const Convex& s, const Vector3d& n) {
-  return n.dot(s.c) + numeric::CoreExtent(s, n) + s.radius * (1 + 16 * kUnit) +
-         s.error * (1 + 16 * kUnit);
-}
-
-/** Box around a placed convex set, rounded outwards. */
-void StaticBox(const Convex& s, Vector3d* lower, Vector3d* upper) {
-  for (int i = 0; i < 3; ++i) {
-    (*upper)[i] = HighestStatic(s, Vector3d::Unit(i));
-    (*lower)[i] = -HighestStatic(s, -Vector3d::Unit(i));
-  }
-}
-
-std::vector<Item> AllItems(const Geometry& g) {
+std::vector<Item> AllItems(const Geometry& g, const PieceTree& tree) {
   std::vector<Item> items;
   for (int s = 0; s < static_cast<int>(g.shapes.size()); ++s) {
-    for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) items.push_back({s, p, false});
+    if (!tree.nodes().empty()) items.push_back({s, -1, false, 0});
+    for (const int p : tree.halfspaces()) items.push_back({s, p, false});
   }
   for (const auto& [i, j] : g.self_pairs) {
     for (int s = g.body_begin[i]; s < g.body_begin[i + 1]; ++s) {
@@ -62,25 +53,34 @@ std::vector<Item> AllItems(const Geometry& g) {
   return items;
 }
 
+/** A plane that shapes are strictly above, with the pieces that are behind it. */
+struct SharedPlane {
+  check::Plane plane;
+  std::vector<int> shapes;
+  int piece = -1;    ///< for which it was made
+  int serves = 0;    ///< pairs of a shape and a piece
+  int refused = -1;  ///< the last shape that is not above it
+};
+
 }  // namespace
 
 struct EdgeWorkspace::Scratch {
   explicit Scratch(const World& world)
-      : point(world), all(AllItems(world.geometry())), numbers(CertificateShapes(world)) {
-    for (const ObstaclePiece& piece : world.geometry().pieces) {
-      auto& [lower, upper] = boxes.emplace_back(Vector3d::Zero(), Vector3d::Zero());
-      if (piece.kind == PieceKind::kConvex) StaticBox(piece.convex, &lower, &upper);
-    }
-  }
+      : point(world),
+        tree(world.geometry()),
+        all(AllItems(world.geometry(), tree)),
+        numbers(CertificateShapes(world)) {}
   numeric::Workspace point;
   TaylorState<kDegree> state;
   std::vector<MovingShape> shapes;
   std::vector<Convex> middles;  ///< of them
   std::vector<long> stamp;      ///< leaf for which a shape was moved last
   std::deque<Task> tasks;
+  PieceTree tree;
   std::vector<Item> all;
-  std::vector<std::pair<Vector3d, Vector3d>> boxes;  ///< of convex pieces, rounded outwards
-  std::vector<int> numbers;                          ///< of shapes in certificates
+  std::vector<Item> items;          ///< of the leaf at hand, one for each piece
+  std::vector<SharedPlane> shared;  ///< of the leaf at hand
+  std::vector<int> numbers;         ///< of shapes in certificates
   numeric::StageCounts counts;
 };
 
@@ -91,9 +91,23 @@ EdgeWorkspace& EdgeWorkspace::operator=(EdgeWorkspace&&) noexcept = default;
 
 namespace {
 
-bool BoxesApart(const Vector3d& lower, const Vector3d& upper, const Vector3d& other_lower,
-                const Vector3d& other_upper) {
-  return (lower.array() > other_upper.array()).any() || (other_lower.array() > upper.array()).any();
+PieceTree::Corners BoxOf(const MovingShape& shape) { return {shape.lower, shape.upper}; }
+
+/** The number of fewest decimals in [low, high], and the highest of them. */
+double FewestDecimals(double low, double high) {
+  double scale = 1;
+  for (int k = 0; k < 12; ++k, scale *= 10) {
+    const double x = std::floor(high * scale) / scale;
+    if (x >= low && x <= high) return x + 0.0;  // no -0
+  }
+  return high;
+}
+
+/** Three decimals of each component, not longer than n. */
+Vector3d Shortened(const Vector3d& n) {
+  Vector3d few;
+  for (int i = 0; i < 3; ++i) few[i] = std::trunc(n[i] * 1000) / 1000 + 0.0;  // no -0
+  return few;
 }
 
 class Decider {
@@ -118,6 +132,13 @@ class Decider {
   bool HoldsHalfspace(const MovingShape& a, const ObstaclePiece& piece, double skin);
   bool Above(const MovingShape& a, double offset, double skin, const Vector3d& n);
   bool Between(const MovingShape& a, const MovingShape& b, const Vector3d& n);
+  template <typename Test>
+  bool TestShortFirst(const Vector3d& n, double skin, const Test& test) const;
+  bool IsServed(const MovingShape& a, const Item& item, const Convex& piece);
+  PieceTree::Corners PieceBox(int piece) const;
+  void Expand(const Item& item);
+  std::vector<Item> OpenItems(const std::vector<Item>& items);
+  void NoteShared();
   bool HasSolids() const;
   bool StartIsFree();
   void NoteSides();
@@ -134,7 +155,8 @@ class Decider {
   EdgeWorkspace::Scratch& x_;
   EdgeCollision result_;
   Leaf leaf_;                         ///< at hand
-  std::vector<check::Plane> planes_;  ///< that settled the item at hand; empty: its boxes did
+  std::vector<check::Plane> planes_;  ///< that settled the item at hand; empty: others did
+  bool may_share_ = false;            ///< the last of them may serve other pieces
 };
 
 Pair Decider::PairOf(const Item& item) const {
@@ -164,19 +186,52 @@ bool Decider::Above(const MovingShape& a, double offset, double skin, const Vect
   const double lowest = LowestOver(a, {n, offset, 0}) - options_.pose * (1 + 16 * kUnit);
   if (!(lowest > -skin * (1 - 16 * kUnit))) return false;
   ++result_.planes;
-  // Half way between the two where rounding allows, so that as much of the obstacle as possible
-  // lies behind.
+  // Up to 0.75 of the way from the obstacle to the shape where rounding allows, so that as much of
+  // the obstacles as possible lies behind. The shape is strictly above that plane too: rounding
+  // m0 costs at most 2 u (|offset| + lowest), far less than the rest of the way.
   const bool wide = lowest > 0x1p-40 * (1 + std::abs(offset));
-  planes_.push_back({n, wide ? offset + 0.5 * lowest : offset, 0});
+  planes_.push_back(
+      {n, wide ? FewestDecimals(offset + 0.5 * lowest, offset + 0.75 * lowest) : offset, 0});
+  may_share_ = wide;
   return true;
 }
 
-// The reference moves with the mean of the two supporting vertices.
+// Whether the piece is behind a plane that the shape is above by what was shown for another piece,
+// or, as is shown now, above as another shape is. Where the shape is hardly above, the checker,
+// whose bounds are a little different, might not see it.
+bool Decider::IsServed(const MovingShape& a, const Item& item, const Convex& piece) {
+  constexpr double kRoom = 1e-4;
+  for (SharedPlane& shared : x_.shared) {
+    if (shared.refused == item.shape) continue;
+    const check::Plane& plane = shared.plane;
+    if (!(HighestStatic(piece, plane.n) <= plane.m0)) continue;
+    if (shared.shapes.back() != item.shape) {
+      ++result_.tests;
+      if (!(LowestOver(a, {plane.n, plane.m0, 0}) > kRoom + options_.pose * (1 + 16 * kUnit))) {
+        shared.refused = item.shape;
+        continue;
+      }
+      shared.shapes.push_back(item.shape);
+    }
+    ++shared.serves;
+    return true;
+  }
+  return false;
+}
+
+// The reference moves with the mean of the two supporting vertices, but for an eighth of the way
+// between them, that its numbers may be short.
 bool Decider::Between(const MovingShape& a, const MovingShape& b, const Vector3d& n) {
   ++result_.tests;
   const Model2 low = LowestVertex(a, n), high = LowestVertex(b, -n);
   const double radii = 0.5 * (b.radius - a.radius);
-  const MovingPlane plane{n, 0.5 * (low.c[0] - high.c[0]) + radii, 0.5 * (low.c[1] - high.c[1])};
+  MovingPlane plane{n, 0.5 * (low.c[0] - high.c[0]) + radii, 0.5 * (low.c[1] - high.c[1])};
+  if (options_.evidence) {
+    const double way = low.c[0] + high.c[0] - a.radius - b.radius, slack = way / 16;
+    if (!(slack > 0)) return false;
+    plane.m0 = FewestDecimals(plane.m0 - slack, plane.m0 + slack);
+    plane.m1 = FewestDecimals(plane.m1 - slack, plane.m1 + slack);
+  }
   if (!(LowestOver(a, plane) > 0 && HighestOver(b, plane) < 0)) return false;
   ++result_.planes;
   planes_.push_back({n, plane.m0, plane.m1});
@@ -206,15 +261,25 @@ bool AnyDirection(const Convex& a, const Convex& b, Item* item, const Test& test
   return !gjk.overlap && length > 0 && good(gjk.v / length);
 }
 
+// Short directions make short certificates. A skin is along a unit vector.
+template <typename Test>
+bool Decider::TestShortFirst(const Vector3d& n, double skin, const Test& test) const {
+  return (options_.evidence && skin == 0 && test(Shortened(n))) || test(n);
+}
+
 bool Decider::HoldsStatic(const MovingShape& a, const Convex& middle, const Convex& b, double skin,
                           Item* item) {
-  return AnyDirection(middle, b, item,
-                      [&](const Vector3d& n) { return Above(a, HighestStatic(b, n), skin, n); });
+  return AnyDirection(middle, b, item, [&](const Vector3d& way) {
+    return TestShortFirst(
+        way, skin, [&](const Vector3d& n) { return Above(a, HighestStatic(b, n), skin, n); });
+  });
 }
 
 bool Decider::HoldsMoving(const MovingShape& a, const MovingShape& b, Item* item) {
-  return AnyDirection(x_.middles[item->shape], x_.middles[item->other], item,
-                      [&](const Vector3d& n) { return Between(a, b, n); });
+  return AnyDirection(
+      x_.middles[item->shape], x_.middles[item->other], item, [&](const Vector3d& way) {
+        return TestShortFirst(way, 0, [&](const Vector3d& n) { return Between(a, b, n); });
+      });
 }
 
 bool Decider::HoldsHalfspace(const MovingShape& a, const ObstaclePiece& piece, double skin) {
@@ -237,7 +302,7 @@ bool Decider::HoldsMesh(const MovingShape& a, const Convex& middle, const numeri
   while (!open.empty()) {
     const numeric::MeshNode& node = mesh.nodes[open.back()];
     open.pop_back();
-    if (BoxesApart(a.lower, a.upper, node.lower - margin, node.upper + margin)) continue;
+    if (BoxesApart(BoxOf(a), {node.lower - margin, node.upper + margin})) continue;
     if (node.count == 0) {
       open.push_back(node.first);
       open.push_back(node.first + 1);
@@ -267,7 +332,7 @@ bool Decider::Holds(Item* item) {
   const MovingShape& a = Shape(item->shape);
   if (item->self) {
     const MovingShape& b = Shape(item->other);
-    return BoxesApart(a.lower, a.upper, b.lower, b.upper) || HoldsMoving(a, b, item);
+    return BoxesApart(BoxOf(a), BoxOf(b)) || HoldsMoving(a, b, item);
   }
   const ObstaclePiece& piece = g_.pieces[item->other];
   const double skin = Skin(*item);
@@ -281,12 +346,7 @@ bool Decider::Holds(Item* item) {
     case PieceKind::kConvex:
       break;
   }
-  auto [lower, upper] = x_.boxes[item->other];
-  if (options_.pose > 0) {
-    lower = lower.array() - options_.pose * kUp - kUnit * lower.array().abs();
-    upper = upper.array() + options_.pose * kUp + kUnit * upper.array().abs();
-  }
-  return BoxesApart(a.lower, a.upper, lower, upper) ||
+  return BoxesApart(BoxOf(a), PieceBox(item->other)) || IsServed(a, *item, piece.convex) ||
          HoldsStatic(a, x_.middles[item->shape], piece.convex, skin, item);
 }
 
@@ -333,15 +393,93 @@ bool Decider::Meets(const Item& item) {
 
 // Halfspaces are their own planes, and the checker looks at boxes by itself.
 void Decider::Note(const Item& item) {
+  if (planes_.empty()) return;
+  const bool convex = !item.self && g_.pieces[item.other].kind == PieceKind::kConvex;
+  if (convex && may_share_) {
+    x_.shared.push_back({planes_.back(), {item.shape}, item.other, 1});
+    return;
+  }
   const bool halfspace = !item.self && g_.pieces[item.other].kind == PieceKind::kHalfspace;
-  if (!options_.evidence || planes_.empty() || halfspace) return;
+  if (!options_.evidence || halfspace) return;
   check::Node& node = options_.evidence->nodes[leaf_];
   const int shape = x_.numbers[item.shape];
   if (item.self) {
     node.self_apart.push_back({shape, x_.numbers[item.other], planes_});
   } else {
+    if (convex) planes_.back().m0 = 0;  // the checker takes the piece's highest point
     node.apart.push_back({shape, item.other, planes_});
   }
+}
+
+void Decider::NoteShared() {
+  if (!options_.evidence || x_.shared.empty()) return;
+  check::Node& node = options_.evidence->nodes[leaf_];
+  for (const SharedPlane& shared : x_.shared) {
+    if (shared.serves == 1) {
+      node.apart.push_back({x_.numbers[shared.shapes[0]], shared.piece, {{shared.plane.n, 0, 0}}});
+      continue;
+    }
+    check::SharedPlane noted{shared.plane, {}};
+    for (const int shape : shared.shapes) noted.shapes.push_back(x_.numbers[shape]);
+    node.above.push_back(std::move(noted));
+  }
+}
+
+PieceTree::Corners Decider::PieceBox(int piece) const {
+  const PieceTree::Corners& box = x_.tree.Box(piece);
+  return options_.pose > 0 ? Widened(box, options_.pose) : box;
+}
+
+/** An item for each piece that is not seen to be apart by boxes of the tree. */
+void Decider::Expand(const Item& item) {
+  if (item.node < 0) {
+    x_.items.push_back(item);
+    return;
+  }
+  const PieceTree::Node& node = x_.tree.nodes()[item.node];
+  const PieceTree::Corners box = BoxOf(Shape(item.shape));
+  const auto meets = [&](const PieceTree::Corners& other) {
+    return !BoxesApart(box, options_.pose > 0 ? Widened(other, options_.pose) : other);
+  };
+  if (!meets(node.box)) return;
+  if (node.count == 0) {
+    Expand({item.shape, -1, false, node.first});
+    Expand({item.shape, -1, false, node.first + 1});
+  }
+  const Vector3d middle = 0.5 * (box.first + box.second);
+  for (int i = node.first; i < node.first + node.count; ++i) {
+    const int piece = x_.tree.order()[i];
+    const PieceTree::Corners& other = x_.tree.Box(piece);
+    if (!meets(other)) continue;
+    const Vector3d near = middle.cwiseMax(other.first).cwiseMin(other.second);
+    x_.items.push_back({item.shape, piece, false, -1, (middle - near).squaredNorm()});
+  }
+}
+
+// What of the items is not shown over the leaf. The nearest pieces of a shape come first: planes
+// before them have many others behind.
+std::vector<Item> Decider::OpenItems(const std::vector<Item>& items) {
+  x_.items.clear();
+  x_.shared.clear();
+  for (const Item& item : items) Expand(item);
+  const auto self =
+      std::find_if(x_.items.begin(), x_.items.end(), [](const Item& item) { return item.self; });
+  std::sort(x_.items.begin(), self, [](const Item& a, const Item& b) {
+    return std::tie(a.shape, a.way, a.other) < std::tie(b.shape, b.way, b.other);
+  });
+  std::vector<Item> open;
+  for (Item& item : x_.items) {
+    if (Holds(&item)) {
+      Note(item);
+    } else {
+      open.push_back(item);
+    }
+  }
+  NoteShared();
+  std::sort(open.begin(), open.end(), [](const Item& a, const Item& b) {
+    return std::tie(a.self, a.shape, a.other) < std::tie(b.self, b.shape, b.other);
+  });
+  return open;
 }
 
 // Where a shape may be inside the box of a solid at the start, a ray shows that it is outside of
@@ -356,7 +494,7 @@ void Decider::NoteSides() {
     const Vector3d margin = Vector3d::Constant(1e-6);  // generous: a ray too many does no harm
     for (int s = 0; s < static_cast<int>(g_.shapes.size()); ++s) {
       const MovingShape shape = Move(g_.shapes[s], x_.state.X_WB[g_.shapes[s].body]);
-      if (BoxesApart(shape.lower, shape.upper, node.lower - margin, node.upper + margin)) continue;
+      if (BoxesApart(BoxOf(shape), {node.lower - margin, node.upper + margin})) continue;
       for (const check::OutsideRay& ray : OutsideRays(x_.numbers[s], p)) {
         options_.evidence->outside.push_back(ray);
       }
@@ -408,16 +546,8 @@ EdgeCollision Decider::Run() {
     }
     ++result_.leaves;
     EvaluateEdge<kDegree>(world_.tree(), edge_, task.leaf, &x_.state);
-    std::vector<Item> open;
     leaf_ = task.leaf;
-    open.reserve(task.items.size());
-    for (Item& item : task.items) {
-      if (Holds(&item)) {
-        Note(item);
-      } else {
-        open.push_back(item);
-      }
-    }
+    std::vector<Item> open = OpenItems(task.items);
     if (open.empty()) continue;
     if (const Item* meeting = FindMeeting(open, task.leaf.middle)) {
       result_.verdict = Verdict::kFails;

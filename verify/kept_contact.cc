@@ -127,7 +127,7 @@ bool FartherThan(const ObstaclePiece& piece, const Vector3d& lower, const Vector
 }
 
 ContactKeeper::ContactKeeper(const numeric::World& world)
-    : world_(world), exact_(exact::PrepareModel(world.model())) {
+    : world_(world), tree_(world.geometry()), exact_(exact::PrepareModel(world.model())) {
   const Geometry& g = world.geometry();
   for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
     const int object = g.pieces[p].object;
@@ -265,10 +265,12 @@ bool ContactKeeper::KeepOnFlat(const MovingSite& site, const numeric::Contact& c
                         2 * pose_ + 64 * kUnit * size;
   const Vector3d lower = LowerOf(y).array() - around, upper = UpperOf(y).array() + around;
   kept->evidence = {contact.site, flat.piece, check::FlatEvidence{flat.face, {}, 1}, {}, {}, {}};
-  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
+  // Farther ones keep away, and the checker sees that by their boxes (NoteAway).
+  const double size_of_foot = (upper - lower).norm();
+  for (const int p : tree_.Near(lower, upper, 2 * size_of_foot + 2e-6)) {
     if (p == flat.piece) continue;
     if (FartherThan(g.pieces[p], lower, upper, 0)) {
-      NoteAway(p, 0.5 * (lower + upper), (upper - lower).norm(), kept);
+      NoteAway(p, 0.5 * (lower + upper), size_of_foot, kept);
       continue;
     }
     const bool is_mesh = g.pieces[p].kind == PieceKind::kMesh;

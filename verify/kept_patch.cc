@@ -53,7 +53,8 @@ std::vector<Vector3d> ContactKeeper::PatchNormals(const numeric::Contact& contac
     }
     found.push_back(n);
   };
-  for (int p = 0; p < static_cast<int>(g.pieces.size()) && found.size() < 64; ++p) {
+  for (const int p : tree_.Near(contact.y_W, contact.y_W, reach)) {
+    if (found.size() >= 64) break;
     const ObstaclePiece& piece = g.pieces[p];
     if (FartherThan(piece, contact.y_W, contact.y_W, reach)) continue;
     if (piece.kind == PieceKind::kHalfspace) add(piece.normal);
@@ -85,7 +86,7 @@ std::vector<Part> ContactKeeper::PatchParts(const FootPath& path, const Plane& p
   PartList list(plane, 0.05 * path.height + 1e-12);
   const Vector3d center = 0.5 * (path.lower + path.upper);
   const double radius = 0.5 * (path.upper - path.lower).norm() + reach;
-  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
+  for (const int p : tree_.Near(path.lower, path.upper, reach)) {
     const ObstaclePiece& piece = g.pieces[p];
     if (FartherThan(piece, path.lower, path.upper, reach)) continue;
     if (piece.kind == PieceKind::kHalfspace) {
@@ -125,7 +126,7 @@ double ContactKeeper::RiseNear(const FootPath& path, const Plane& plane, double 
   double rise = 0;
   kept->evidence.apart.clear();
   kept->friction = INFINITY;
-  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
+  for (const int p : tree_.Near(path.lower, path.upper, reach + 1e-8)) {
     const ObstaclePiece& piece = g.pieces[p];
     if (FartherThan(piece, path.lower, path.upper, reach)) {
       const Vector3d half = piece.convex.R.cwiseAbs() * piece.convex.half +
@@ -302,8 +303,10 @@ bool ContactKeeper::KeepOnPlane(const MovingSite& site, const numeric::Contact& 
 double ContactKeeper::LeastSkin(const MovingSite& site, const FootPath& path, double reach) const {
   const Geometry& g = world_.geometry();
   double skin = site.skin;
-  for (const ObstaclePiece& piece : g.pieces) {
-    if (skin > 0 && !FartherThan(piece, path.lower, path.upper, reach)) {
+  if (!(skin > 0)) return skin;
+  for (const int p : tree_.Near(path.lower, path.upper, reach)) {
+    const ObstaclePiece& piece = g.pieces[p];
+    if (!FartherThan(piece, path.lower, path.upper, reach)) {
       skin = std::min(skin, g.PairSkin(site.body, piece.object));
     }
   }

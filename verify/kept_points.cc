@@ -91,7 +91,7 @@ bool ContactKeeper::KeepOnConvex(const MovingSite& site, const numeric::Contact&
   kept->friction = world_.model().objects[piece.object].friction;
   const double ball = (rules.seam + error + 2 * pose_) * kUp + 8 * kUnit * contact.x_W.lpNorm<1>();
   kept->evidence = {contact.site, index, {}, NearEvidenceOf(piece.convex, here), {}, {}};
-  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
+  for (const int p : tree_.Near(here.y, here.y, 2 * ball + 2e-6)) {
     const ObstaclePiece& other = g.pieces[p];
     if (p == index) continue;
     const bool away = numeric::BallApart(here.y, ball, other);
@@ -174,11 +174,11 @@ bool ContactKeeper::FinishNear(const MovingSite& site, int index, const Surround
   kept->evidence = evidence;
   kept->friction = world_.model().objects[g.pieces[index].object].friction;
   const Vector3d y = 0.5 * (around.lower + around.upper), x = 0.5 * (site.lower + site.upper);
-  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
+  const double size = (site.upper - site.lower).norm() + (around.upper - around.lower).norm();
+  for (const int p : tree_.Near(around.lower, around.upper, 2 * (size + around.seam) + 2e-6)) {
     const ObstaclePiece& other = g.pieces[p];
     if (p == index) continue;
     const bool away = FartherThan(other, around.lower, around.upper, around.seam);
-    const double size = (site.upper - site.lower).norm() + (around.upper - around.lower).norm();
     NoteAway(p, away ? y : x, size + (away ? around.seam : around.farthest), kept);
     if (away) continue;
     if (!FartherThan(other, site.lower, site.upper, around.farthest)) return false;

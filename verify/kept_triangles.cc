@@ -172,9 +172,10 @@ bool ContactKeeper::KeepOnTriangles(const MovingSite& site, const numeric::Conta
   kept->friction = world_.model().objects[g.pieces[flat.piece].object].friction;
   const double around = rules.seam + plane.normal_error * UpperBound(d) + 2 * pose_ + 1e-9;
   const Vector3d lower = LowerOf(y).array() - around, upper = UpperOf(y).array() + around;
-  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
+  const double size_of_foot = (upper - lower).norm();
+  for (const int p : tree_.Near(lower, upper, 2 * size_of_foot + 2e-6)) {
     if (FartherThan(g.pieces[p], lower, upper, 0)) {
-      NoteAway(p, 0.5 * (lower + upper), (upper - lower).norm(), kept);
+      NoteAway(p, 0.5 * (lower + upper), size_of_foot, kept);
       continue;
     }
     const bool is_mesh = g.pieces[p].kind == PieceKind::kMesh;

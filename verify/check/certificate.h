@@ -30,6 +30,13 @@ struct Separation {
   std::vector<Plane> planes;
 };
 
+/** A plane n.x = m0 that the shapes are strictly above; it serves every convex piece that is not
+ above it. */
+struct SharedPlane {
+  Plane plane;
+  std::vector<int> shapes;
+};
+
 /** A direction in which a ray from a point of the shape (the first corner of its core, the middle
  of a cylinder) crosses the triangles of a solid in equal numbers from either side: the shape is
  outside the solid where the edge begins. */
@@ -118,6 +125,7 @@ struct Balance {
 struct Node {
   std::vector<Separation> apart;
   std::vector<Separation> self_apart;
+  std::vector<SharedPlane> above;
   std::optional<Balance> balance;
   std::vector<Node> halves;  ///< none or two
 };

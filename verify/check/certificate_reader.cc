@@ -29,20 +29,31 @@ struct Counts {
   std::size_t sites = 0;
 };
 
-/** [shape, other, plane, plane ...]; a plane is [nx, ny, nz], then m0, then m1 where given. */
+/** [nx, ny, nz], then m0, then m1 where given. */
+Plane ReadPlane(const View& given) {
+  const std::size_t size = given.Size();
+  if (size < 3 || size > 5) given.Fail("a plane has three to five numbers");
+  Plane plane;
+  for (int k = 0; k < 3; ++k) plane.n[k] = given.At(k).Number();
+  if (size > 3) plane.m0 = given.At(3).Number();
+  if (size > 4) plane.m1 = given.At(4).Number();
+  return plane;
+}
+
+/** [shape, other, plane, plane ...] */
 std::vector<Plane> ReadPlanes(const View& view, std::size_t first) {
   std::vector<Plane> planes;
-  for (std::size_t i = first; i < view.Size(); ++i) {
-    const View given = view.At(i);
-    const std::size_t size = given.Size();
-    if (size < 3 || size > 5) given.Fail("a plane has three to five numbers");
-    Plane plane;
-    for (int k = 0; k < 3; ++k) plane.n[k] = given.At(k).Number();
-    if (size > 3) plane.m0 = given.At(3).Number();
-    if (size > 4) plane.m1 = given.At(4).Number();
-    planes.push_back(plane);
-  }
+  for (std::size_t i = first; i < view.Size(); ++i) planes.push_back(ReadPlane(view.At(i)));
   return planes;
+}
+
+/** [plane, shape, shape ...] */
+SharedPlane ReadSharedPlane(const View& view, std::size_t shapes) {
+  if (view.Size() < 2) view.Fail("a plane and the shapes above it are expected here");
+  if (view.At(0).Size() > 4) view.At(0).Fail("a plane of shapes and pieces does not move");
+  SharedPlane shared{ReadPlane(view.At(0)), {}};
+  for (std::size_t i = 1; i < view.Size(); ++i) shared.shapes.push_back(view.At(i).Index(shapes));
+  return shared;
 }
 
 std::vector<Separation> ReadSeparations(const View& view, std::size_t shapes, std::size_t others) {
@@ -182,13 +193,19 @@ Balance ReadBalance(const View& view, const Counts& counts) {
 }
 
 Node ReadNode(const View& view, const Counts& counts) {
-  view.AllowKeys({"apart", "self_apart", "balance", "halves"});
+  view.AllowKeys({"apart", "self_apart", "above", "balance", "halves"});
   Node node;
   if (view.Has("apart")) {
     node.apart = ReadSeparations(view.Get("apart"), counts.shapes, counts.pieces.size());
   }
   if (view.Has("self_apart")) {
     node.self_apart = ReadSeparations(view.Get("self_apart"), counts.shapes, counts.shapes);
+  }
+  if (view.Has("above")) {
+    const View list = view.Get("above");
+    for (std::size_t i = 0; i < list.Size(); ++i) {
+      node.above.push_back(ReadSharedPlane(list.At(i), counts.shapes));
+    }
   }
   if (view.Has("balance")) node.balance = ReadBalance(view.Get("balance"), counts);
   if (!view.Has("halves")) return node;

@@ -153,7 +153,7 @@ IntervalVector<I> ContactChecker<I>::AboveFoot(const Flat& flat, const Guard& gu
 template <typename I>
 bool ContactChecker<I>::OthersAllow(const ContactEvidence& evidence, const Flat& flat,
                                     const Guard& guard, double* friction) {
-  for (int p = 0; p < static_cast<int>(prepared_.obstacles.size()); ++p) {
+  for (const int p : prepared_.tree.Near(guard.box)) {
     const Obstacle<I>& obstacle = prepared_.obstacles[p];
     const bool own_primitive = p == evidence.piece && evidence.flat->triangles.empty();
     const std::vector<Plane>& planes = PlanesFor(evidence, p);

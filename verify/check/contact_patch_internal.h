@@ -208,7 +208,7 @@ std::optional<KeptContact<I>> ContactChecker<I>::KeepOnPatch(const ContactEviden
   const Guard guard = MakeGuard(foot, plane.reach);
   double skin = model_.contact.skin;
   const int body = model_.robot.links[model_.sites[evidence.site].link].body;
-  for (int p = 0; p < static_cast<int>(prepared_.obstacles.size()); ++p) {
+  for (const int p : prepared_.tree.Near(guard.box)) {
     const std::vector<Plane>& planes = PlanesFor(evidence, p);
     if (IsAway(guard, p, planes)) continue;
     if (!KeepsBelow(p, plane, guard, planes)) {

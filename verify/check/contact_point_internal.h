@@ -57,7 +57,7 @@ I ContactChecker<I>::Excess(const PlacedSet<I>& placed, const IntervalVector<I>&
 template <typename I>
 bool ContactChecker<I>::OthersStayAway(const ContactEvidence& evidence, const Guard& seam,
                                        const Guard& nearer, KeptContact<I>* kept) {
-  for (int p = 0; p < static_cast<int>(prepared_.obstacles.size()); ++p) {
+  for (const int p : prepared_.tree.Near(seam.box)) {
     const Obstacle<I>& other = prepared_.obstacles[p];
     const std::vector<Plane>& planes = PlanesFor(evidence, p);
     if (p == evidence.piece || IsAway(seam, p, planes)) continue;

@@ -23,9 +23,11 @@ class EdgeChecker {
     if (DotOf(edge.from.X_WB.q, edge.to.X_WB.q) == 0) return "the shorter arc is not defined";
     edge_ = &edge;
     refusal_.clear();
-    std::vector<Obligation> all = AllObligations();
-    if (!CheckOutside(proof, all)) return refusal_;
-    CheckNode(proof.root, {0.5, 0.5}, all, true);
+    if (!CheckOutside(proof)) return refusal_;
+    const Span whole{0.5, 0.5};
+    PlaceAt(whole);
+    std::vector<Obligation> open = OpenObligations();
+    CheckNode(proof.root, whole, open, true);
     return refusal_;
   }
 
@@ -37,14 +39,15 @@ class EdgeChecker {
     bool self = false;
   };
 
-  std::vector<Obligation> AllObligations() const {
+  /** All obligations but those of shapes and pieces whose boxes over the span at hand are apart.
+   */
+  std::vector<Obligation> OpenObligations() {
     std::vector<Obligation> all;
     const int shapes = static_cast<int>(prepared_.shapes.size());
-    const int pieces = static_cast<int>(prepared_.obstacles.size());
     std::vector<std::vector<int>> of_body(prepared_.model->robot.bodies.size());
     for (int s = 0; s < shapes; ++s) of_body[prepared_.shapes[s].body].push_back(s);
     for (int s = 0; s < shapes; ++s) {
-      for (int p = 0; p < pieces; ++p) all.push_back({s, p, false});
+      for (const int p : prepared_.tree.Near(Shape(s).box)) all.push_back({s, p, false});
     }
     for (const auto& [i, j] : prepared_.model->self_pairs) {
       for (const int s : of_body[i]) {
@@ -97,10 +100,26 @@ class EdgeChecker {
     return planes;
   }
 
-  bool CheckOutside(const EdgeProof& proof, const std::vector<Obligation>& all);
+  /** The planes that a node gives for all pieces behind them, by shape. */
+  using SharedOf = std::map<int, std::vector<PlaneBelow<I>>>;
+  SharedOf SharedPlanes(const std::vector<SharedPlane>& above) {
+    SharedOf shared;
+    for (const SharedPlane& given : above) {
+      const IntervalVector<I> n = Lifted<I>(given.plane.n);
+      const I m0(given.plane.m0);
+      for (const int s : given.shapes) {
+        if (s < 0 || s >= static_cast<int>(prepared_.shapes.size())) continue;
+        shared[s].push_back({n, m0, LowestOver(Shape(s), n, Polynomial<I>(m0))});
+      }
+    }
+    return shared;
+  }
+
+  bool CheckOutside(const EdgeProof& proof);
   /** `open`: what has to be shown over the span; its order is changed. */
   bool CheckNode(const Node& node, const Span& span, std::span<Obligation> open, bool balance_open);
-  bool Holds(const Obligation& o, const PlanesOf& apart, const PlanesOf& self_apart);
+  bool Holds(const Obligation& o, const PlanesOf& apart, const PlanesOf& self_apart,
+             const SharedOf& shared);
   bool CheckBalance(const Balance& balance, const Span& span);
   /** Whether the forces sum up to (v_f, v_tau) about the centre of mass, inside of the cone. */
   bool CheckForces(const std::vector<ForceEvidence>& forces,
@@ -123,31 +142,33 @@ IntervalVector<I> PointOfCore(const ConvexSet<I>& set) {
 
 // A solid's surface is kept apart from the shape for all s, so that its side is the one at s = 0.
 template <typename I>
-bool EdgeChecker<I>::CheckOutside(const EdgeProof& proof, const std::vector<Obligation>& all) {
+bool EdgeChecker<I>::CheckOutside(const EdgeProof& proof) {
   const Span start{0, 0};
   bool placed = false;
-  for (const Obligation& o : all) {
-    if (o.self) break;
-    const Obstacle<I>& obstacle = prepared_.obstacles[o.other];
+  for (int p = 0; p < static_cast<int>(prepared_.obstacles.size()); ++p) {
+    const Obstacle<I>& obstacle = prepared_.obstacles[p];
     if (!obstacle.mesh || !obstacle.mesh->solid || obstacle.mesh->triangles.empty()) continue;
     if (!placed) PlaceAt(start);
     placed = true;
-    const MovingSet<I>& shape = Shape(o.shape);
-    if (Apart(shape.box, obstacle.mesh->box)) continue;
-    const PolynomialVector<I> c = Apply(shape.X, PointOfCore(*shape.set));
-    const IntervalVector<I> p{c[0].c[0], c[1].c[0], c[2].c[0]};
-    const bool outside =
-        std::any_of(proof.outside.begin(), proof.outside.end(), [&](const OutsideRay& ray) {
-          return ray.shape == o.shape && ray.piece == o.other &&
-                 IsOutside(p, *obstacle.mesh, Lifted<I>(ray.direction));
-        });
-    if (!outside) return Refuse(start, Describe(o) + " (outside the solid)");
+    for (int s = 0; s < static_cast<int>(prepared_.shapes.size()); ++s) {
+      const MovingSet<I>& shape = Shape(s);
+      if (Apart(shape.box, obstacle.mesh->box)) continue;
+      const PolynomialVector<I> c = Apply(shape.X, PointOfCore(*shape.set));
+      const IntervalVector<I> x{c[0].c[0], c[1].c[0], c[2].c[0]};
+      const bool outside =
+          std::any_of(proof.outside.begin(), proof.outside.end(), [&](const OutsideRay& ray) {
+            return ray.shape == s && ray.piece == p &&
+                   IsOutside(x, *obstacle.mesh, Lifted<I>(ray.direction));
+          });
+      if (!outside) return Refuse(start, Describe({s, p, false}) + " (outside the solid)");
+    }
   }
   return true;
 }
 
 template <typename I>
-bool EdgeChecker<I>::Holds(const Obligation& o, const PlanesOf& apart, const PlanesOf& self_apart) {
+bool EdgeChecker<I>::Holds(const Obligation& o, const PlanesOf& apart, const PlanesOf& self_apart,
+                           const SharedOf& shared) {
   static const std::vector<Plane> kNone;
   const PlanesOf& given = o.self ? self_apart : apart;
   const auto found = given.find({o.shape, o.other});
@@ -155,7 +176,11 @@ bool EdgeChecker<I>::Holds(const Obligation& o, const PlanesOf& apart, const Pla
   if (o.self) return AreApart(Shape(o.shape), Shape(o.other), planes);
   const Obstacle<I>& obstacle = prepared_.obstacles[o.other];
   const double skin = prepared_.Skin(prepared_.shapes[o.shape].body, obstacle.object);
-  return IsFree(Shape(o.shape), obstacle, planes, {skin, prepared_.robust.pose});
+  const Slack slack{skin, prepared_.robust.pose};
+  if (IsFree(Shape(o.shape), obstacle, planes, slack)) return true;
+  const auto below = shared.find(o.shape);
+  return obstacle.convex && below != shared.end() &&
+         IsBehindOne(*obstacle.convex, below->second, slack);
 }
 
 template <typename I>
@@ -220,9 +245,11 @@ template <typename I>
 bool EdgeChecker<I>::CheckNode(const Node& node, const Span& span, std::span<Obligation> open,
                                bool balance_open) {
   if (!open.empty() || (balance_open && node.balance)) PlaceAt(span);
+  const SharedOf shared = open.empty() ? SharedOf{} : SharedPlanes(node.above);
   const PlanesOf apart = Index(node.apart), self_apart = Index(node.self_apart);
-  const auto rest = std::partition(
-      open.begin(), open.end(), [&](const Obligation& o) { return !Holds(o, apart, self_apart); });
+  const auto rest = std::partition(open.begin(), open.end(), [&](const Obligation& o) {
+    return !Holds(o, apart, self_apart, shared);
+  });
   open = open.first(static_cast<std::size_t>(rest - open.begin()));
   if (balance_open && node.balance) {
     if (!CheckBalance(*node.balance, span)) return false;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cguide/verify/check/certificate.h"
+#include "cguide/verify/check/piece_tree_internal.h"
 #include "cguide/verify/check/solids_internal.h"
 
 namespace cguide::check {
@@ -100,6 +101,13 @@ void Inflate(const I& by, Obstacle<I>* obstacle) {
   for (PlacedTriangle<I>& t : obstacle->mesh->triangles) t.box = Inflated(t.box, by);
 }
 
+/** The box about a piece, or null: halfspaces and meshes without triangles have none. */
+template <typename I>
+const WorldBox<I>* BoxOf(const Obstacle<I>& obstacle) {
+  if (obstacle.convex) return &obstacle.convex->box;
+  return obstacle.mesh && !obstacle.mesh->triangles.empty() ? &obstacle.mesh->box : nullptr;
+}
+
 /** A shape of the robot. Shapes are numbered over the links in the order of the model. */
 template <typename I>
 struct RobotShape {
@@ -128,6 +136,9 @@ struct Prepared {
         if (robust.pose > 0) Inflate(I(robust.pose), &obstacles.back());
       }
     }
+    std::vector<const WorldBox<I>*> boxes;
+    for (const Obstacle<I>& obstacle : obstacles) boxes.push_back(BoxOf(obstacle));
+    tree = PieceTree<I>(boxes);
     may_touch = given.contact.may_touch;
     std::sort(may_touch.begin(), may_touch.end());
   }
@@ -144,6 +155,7 @@ struct Prepared {
   std::vector<ConstantJoint<I>> joints;
   std::vector<RobotShape<I>> shapes;
   std::vector<Obstacle<I>> obstacles;
+  PieceTree<I> tree;                           ///< of their boxes
   std::vector<std::pair<int, int>> may_touch;  ///< sorted
 };
 

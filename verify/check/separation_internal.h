@@ -20,15 +20,36 @@ struct Slack {
   double pose = 0;
 };
 
-/** A moving shape keeps above n.x = offset wherever the plane is moved by at most `pose`, or does
- so after a translation along n of less than `skin`. */
+/** Whether a shape keeps above n.x = offset wherever the plane is moved by at most `pose`, or does
+ so after a translation along n of less than `skin`; `lowest` bounds its n.x - offset. */
 template <typename I>
-bool IsAbove(const MovingSet<I>& shape, const IntervalVector<I>& n, const I& offset,
-             const Slack& slack) {
-  I lowest = LowestOver(shape, n, Polynomial<I>(offset));
+bool IsAbove(I lowest, const IntervalVector<I>& n, const Slack& slack) {
   if (slack.skin > 0) lowest = lowest + I(slack.skin) * Lower(Norm(n));
   if (slack.pose > 0) lowest = lowest - I(slack.pose) * Upper(Norm(n));
   return IsPositive(lowest);
+}
+
+template <typename I>
+bool IsAbove(const MovingSet<I>& shape, const IntervalVector<I>& n, const I& offset,
+             const Slack& slack) {
+  return IsAbove(LowestOver(shape, n, Polynomial<I>(offset)), n, slack);
+}
+
+/** A plane that a shape may be above, for all pieces behind it. */
+template <typename I>
+struct PlaneBelow {
+  IntervalVector<I> n;
+  I m0;
+  I lowest;  ///< of n.x - m0 over the shape
+};
+
+template <typename I>
+bool IsBehindOne(const PlacedSet<I>& placed, const std::vector<PlaneBelow<I>>& planes,
+                 const Slack& slack) {
+  return std::any_of(planes.begin(), planes.end(), [&](const PlaneBelow<I>& plane) {
+    return IsAbove(plane.lowest, plane.n, slack) &&
+           IsNonNegative(plane.m0 - HighestOf(placed, plane.n));
+  });
 }
 
 template <typename I>

@@ -98,6 +98,32 @@ TEST_CASE("Of every kind of evidence in one certificate none holds with a wrong 
   }
 }
 
+TEST_CASE(
+    "A plane for all pieces behind it is as good as one for a pair, and no number of it is free") {
+  json whole = json::parse(ReadExample("block.json"));
+  json& tree = whole["proofs"][0]["tree"];
+  tree.erase("apart");
+  CHECK(!IsProved(whole));
+  // The cube is above x + y = -0.4 in -n, the post's corner at -0.459.
+  tree["above"] = json::parse("[[[-1, -1, 0, -0.43], 0]]");
+  for (const int bits : {0, 128}) CHECK(IsProved(whole, bits));
+  const Certificate read = ParseCertificate(whole.dump());
+  const std::string text = verify::WriteCertificate(read.model, read.path, "", {&read.proofs[0]});
+  CHECK(IsProved(json::parse(text)));
+  const auto is_proved_with = [&](const std::string& place, const json& value) {
+    json mutant = whole;
+    mutant[json::json_pointer("/proofs/0/tree/above/0" + place)] = value;
+    return IsProved(mutant);
+  };
+  CHECK(is_proved_with("/0/3", -0.45));
+  CHECK(!is_proved_with("/0/3", -0.46));  // the post's corner is above
+  CHECK(!is_proved_with("/0/3", -0.39));  // and the cube's
+  CHECK(!is_proved_with("/0/0", 1));
+  CHECK(!is_proved_with("/0/1", -1.5));
+  CHECK(!is_proved_with("/0/2", 2));
+  CHECK(!is_proved_with("/1", 1));  // there is no such shape
+}
+
 TEST_CASE("The examples do not prove what is false") {
   const auto altered = [](const char* name, const std::string& pointer, const json& value) {
     json mutant = json::parse(ReadExample(name));

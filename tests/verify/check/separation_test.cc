@@ -223,6 +223,48 @@ TEST_CASE("Of a mesh every plane is below the shape and every triangle below a p
   CHECK(!IsFree(set, obstacle, {{{0, 0, 0}, -1, 0}}, {0, 0}));
 }
 
+TEST_CASE("A plane that shapes are above serves the convex pieces behind it and no other") {
+  // Two cubes of 0.2 m turned by 45 degrees; three turned boxes in a row behind x + y = -0.2186.
+  const Pose turned{{0, 0, 0}, {0, 0, 0.38268343236508978, 0.92387953251128674}};
+  const auto at = [&](double x, double y) { return Pose{{x, y, 0}, turned.q}; };
+  Object row{"row", 0.6, {}};
+  for (const double aside : {-0.1, 0.0, 0.1}) {
+    row.pieces.push_back({at(aside - 0.18, -aside - 0.18), Box{{0.2, 0.2, 0.2}}});
+  }
+  const Object ball = OneObject("ball", Sphere{1}, {{50, 0, 0}, {}});
+  const Box cube{{0.2, 0.2, 0.2}};
+  const Model model = ContactModelOf({{at(0.05, -0.05), cube}, {at(-0.05, 0.05), cube}},
+                                     {row, ball}, {{48.98, 0, 0}});
+  const auto refusal = [&](const std::vector<SharedPlane>& above, double pose, int bits) {
+    EdgeProof proof = ProofOf({NearOn(3, {{0, 0, 0}, {}})});
+    proof.root.above = above;
+    return Checker(model, {bits, {0, pose, 0}}).CheckEdge(Move({0, 0, 0}, {0.01, 0, 0}), proof);
+  };
+  // Along (1, 1): cubes at least -0.1 sqrt 2 = -0.1414, boxes at most -0.36 + 0.1414 = -0.2186.
+  for (const int bits : {0, 128}) {
+    const auto holds = [&](const std::vector<SharedPlane>& above, double pose = 0) {
+      return refusal(above, pose, bits).empty();
+    };
+    CHECK(holds({{{{1, 1, 0}, -0.18, 0}, {0, 1}}}));
+    CHECK(holds({{{{1, 1, 0}, -0.218, 0}, {1, 0}}}));
+    CHECK(!holds({{{{1, 1, 0}, -0.219, 0}, {0, 1}}}));  // above the boxes' corners
+    CHECK(!holds({{{{1, 1, 0}, -0.14, 0}, {0, 1}}}));   // above the cubes' corners
+    CHECK(!holds({{{{1, 1, 0}, -0.18, 0}, {0}}}));      // a shape is left out
+    CHECK(!holds({{{{1, 1, 0}, -0.18, 0}, {1}}}));
+    CHECK(!holds({}));
+    CHECK(!holds({{{{-1, -1, 0}, 0.3, 0}, {0, 1}}}));
+    CHECK(!holds({{{{0, 0, 0}, -0.18, 0}, {0, 1}}}));
+    CHECK(!holds({{{{0, 0, 0}, 0, 0}, {0, 1}}}));
+    // One that both shapes are above (-0.333 at least) and the last of the row alone is behind.
+    CHECK(!holds({{{{1, 2, 0}, -0.34, 0}, {0, 1}}}));
+    // One that serves nobody spoils nothing; indices that name nothing are passed over.
+    CHECK(holds({{{{1, 0, 0}, 9, 0}, {0, 1, 7, -1}}, {{{1, 1, 0}, -0.18, 0}, {0, 1}}}));
+    // Cubes and plane are 0.00858/sqrt 2 = 0.00607 m apart.
+    CHECK(holds({{{{1, 1, 0}, -0.15, 0}, {0, 1}}}, 0.006));
+    CHECK(!holds({{{{1, 1, 0}, -0.15, 0}, {0, 1}}}, 0.0062));
+  }
+}
+
 TEST_CASE("Two moving shapes are parted by a plane that moves with them, not by a fixed one") {
   Model model = ContactModelOf({}, {}, {});
   Rng rng(4);
