@@ -67,6 +67,7 @@ class Search {
     const std::vector<int> trees = forest_.trees();
     const long limit = run_.iteration_limit - result_.iterations;
     const int count = static_cast<int>(std::min<long>(kBatchSize, limit));
+    const std::array<GrowthKind, kBatchSize> kinds = PickKinds(count);
     std::array<ContactGrowth, kBatchSize> growths;
     RunJobs(count, run_.threads, [&](int i, int worker) {
       const auto iteration = static_cast<std::uint64_t>(result_.iterations + i);
@@ -74,7 +75,8 @@ class Search {
       const ExtensionContext context{world_, oracle_, extension_,
                                      workspaces_[static_cast<std::size_t>(worker)].get(), nullptr};
       growths[static_cast<std::size_t>(i)] =
-          GrowContacts(forest_, trees, sampling_, limbs_, options_, context, rng);
+          GrowContacts(kinds[static_cast<std::size_t>(i)], forest_, trees, sampling_, limbs_,
+                       options_, context, rng);
     });
     for (int i = 0; i < count && !Solved(); ++i) {
       ++result_.iterations;
@@ -82,14 +84,38 @@ class Search {
     }
   }
 
+  // The kinds that had least of their share of the effort; what a job will cost is what its kind
+  // did cost in the mean. Iterations of one kind can take a hundred times as long as of another.
+  std::array<GrowthKind, kBatchSize> PickKinds(int count) const {
+    std::array<GrowthKind, kBatchSize> kinds{};
+    std::array<double, kNumGrowthKinds> spent = effort_;
+    for (int i = 0; i < count; ++i) {
+      std::size_t best = 0;
+      for (std::size_t k = 0; k < kNumGrowthKinds; ++k) {
+        if (spent[k] * options_.shares[best] < spent[best] * options_.shares[k]) best = k;
+      }
+      kinds[static_cast<std::size_t>(i)] = static_cast<GrowthKind>(best);
+      spent[best] += (1 + effort_[best]) / (1 + static_cast<double>(jobs_[best]));
+    }
+    return kinds;
+  }
+
   void Merge(const ContactGrowth& growth) {
     result_.counters.Add(growth.counters);
+    effort_[static_cast<std::size_t>(growth.kind)] += GrowthEffort(growth.counters);
+    ++jobs_[static_cast<std::size_t>(growth.kind)];
     if (growth.nodes.empty() && growth.links.empty()) {
       if (growth.near >= 0) forest_.Miss(growth.near);
       return;
     }
     const int end = Append(growth.nodes, growth.near);
     for (const ForestLink& link : growth.links) Merge(link, end);
+    if (growth.kind == GrowthKind::kLink && !Solved()) {
+      for (const ForestLink& link : growth.links) {
+        if (!link.chain.reached) forest_.Miss(growth.near);
+        if (link.chain.nodes.empty()) forest_.Miss(link.from);
+      }
+    }
   }
 
   // A chain that reached its end holds a copy of that node; it is listed once.
@@ -114,6 +140,8 @@ class Search {
   const std::vector<Limb> limbs_;
   std::vector<std::unique_ptr<ProjectionWorkspace>> workspaces_;
   Forest forest_;
+  std::array<double, kNumGrowthKinds> effort_{};  // by GrowthKind
+  std::array<long, kNumGrowthKinds> jobs_{};
   PlanResult result_;
 };
 

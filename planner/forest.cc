@@ -45,14 +45,17 @@ std::vector<int> Forest::trees() const {
   return result;
 }
 
+double Forest::Cost(const Configuration& q, int i) const {
+  return Distance(node(i), q) + kMissLength * misses_[static_cast<std::size_t>(i)];
+}
+
 int Forest::Nearest(const Configuration& q, int tree) const {
   int best = -1;
   double best_distance = std::numeric_limits<double>::infinity();
   for (const int i : members(tree)) {
     // The translation alone is a lower bound and far cheaper than the whole metric.
     if ((node(i).X_WB.p - q.X_WB.p).squaredNorm() >= best_distance * best_distance) continue;
-    const double distance =
-        Distance(node(i), q) + kMissLength * misses_[static_cast<std::size_t>(i)];
+    const double distance = Cost(q, i);
     if (distance < best_distance) {
       best_distance = distance;
       best = i;

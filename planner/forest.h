@@ -32,6 +32,9 @@ class Forest {
    little each time, so that nodes with no way on are left alone. */
   void Miss(int i) { ++misses_[static_cast<std::size_t>(i)]; }
 
+  /** The distance from q to node i with its misses. */
+  double Cost(const Configuration& q, int i) const;
+
   /** The node of a tree nearest to q in the metric of path.h, the first of equals. */
   int Nearest(const Configuration& q, int tree) const;
 

@@ -1,5 +1,6 @@
 #include "cguide/planner/repair.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -261,6 +262,22 @@ class Repairer {
       AddSite(approach, stable_ ? kInfinity : kHighBand * epsilon - approach.distance,
               kContactCompliance);
     }
+    if (options_.slide_compliance > 0) AddHolds();
+  }
+
+  // Two sites a body say where it is on a face.
+  void AddHolds() {
+    const double epsilon = world_.model().contact.epsilon;
+    held_.assign(world_.tree().bodies.size(), 0);
+    for (const Approach& approach : ws_.approaches) {
+      if (approach.distance >= epsilon) break;
+      if (++held_[static_cast<std::size_t>(approach.body)] > 2) continue;
+      const Vector3d a = approach.n_W.unitOrthogonal();
+      for (const Vector3d& along : {a, Vector3d(approach.n_W.cross(a))}) {
+        numeric::PointJacobianRow(world_.tree(), state(), approach.body, approach.x_W, along,
+                                  &NextBound(0, 0, options_.slide_compliance).row);
+      }
+    }
   }
 
   void AddWanted() {
@@ -305,6 +322,7 @@ class Repairer {
   std::vector<SupportLine> lines_;
   std::vector<double> errors_;  // of the goals, since the last iterate outside
   std::size_t count_ = 0;       // bounds in use
+  std::vector<int> held_;       // sites of a body
   int unstable_ = 0;            // iterates that were
   int wanted_ = 0;              // sites to be brought into contact besides those that are
 };
