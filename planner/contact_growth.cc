@@ -9,7 +9,7 @@ namespace {
 constexpr double kShareOfHeights = 0.3;  // translations that go for the place's height too
 constexpr int kPostureWalk = 3;          // extensions towards a posture or a limb's
 constexpr int kNearTrees = 3;            // a link goes to one of so many trees
-constexpr double kEdgeEffort = 8;        // Newton steps that take as long as proving an edge
+constexpr double kEdgeEffort = 3;        // Newton steps that take as long as testing an edge
 constexpr int kLinkTries = 8;            // nodes of which the nearest to another tree is linked
 constexpr double kThere = 0.05;          // places nearer than this are reached (m)
 

@@ -34,6 +34,10 @@ struct ContactGrowthOptions {
   int links = 1;              ///< trees that a new node is connected with
   double link_reach = 0.5;    ///< for roots that are no farther apart (m)
   LimbStepOptions step;
+  /** Trees grow by edges that hold at samples so far apart (metric of path.h); only those of a way
+   from start to goal are asked of the oracle. 0: every edge is. */
+  double sample_step = 0.05;
+  int mendings = 2;  ///< halvings of an edge of the way that the oracle does not accept
 };
 
 /** A chain from a node of one tree towards another node. */

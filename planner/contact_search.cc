@@ -4,12 +4,17 @@
 #include <array>
 #include <memory>
 
+#include "cguide/numeric/sampled_edge.h"
 #include "cguide/planner/batch.h"
 
 namespace cguide::planner {
 namespace {
 
 constexpr int kStart = 0, kGoal = 1;  // nodes of the forest
+// Where the oracle refuses more edges than these, and more than this part of those it is asked
+// about, it is asked at once.
+constexpr long kRefusals = 20;
+constexpr double kRefusedPart = 0.4;
 
 class Search {
  public:
@@ -19,6 +24,9 @@ class Search {
       : world_(world),
         sampling_(sampling),
         oracle_(oracle),
+        samples_(options.sample_step > 0 ? numeric::MakeSampledOracle(
+                                               world, {options.sample_step, numeric::Space::kGuide})
+                                         : oracle),
         extension_(extension),
         options_(options),
         run_(run),
@@ -33,16 +41,13 @@ class Search {
     forest_.Add(start, -1);
     forest_.Add(goal, -1);
     TryDirect();
-    while (!Solved() && !clock.Expired(result_.iterations, &result_.stop)) {
+    while (!ProveWay() && !clock.Expired(result_.iterations, &result_.stop)) {
       RunBatch();
       if (run_.on_progress) {
         run_.on_progress({result_.iterations, TreeSize(kStart), TreeSize(kGoal), clock.Seconds()});
       }
     }
-    if (Solved()) {
-      result_.stop = StopReason::kSolved;
-      result_.waypoints = forest_.Path(kStart, kGoal);
-    }
+    if (!result_.waypoints.empty()) result_.stop = StopReason::kSolved;
     result_.start_nodes = TreeSize(kStart);
     result_.goal_nodes = Solved() ? 0 : TreeSize(kGoal);
     result_.seconds = clock.Seconds();
@@ -58,9 +63,71 @@ class Search {
 
   // The easy rooms need no sample at all.
   void TryDirect() {
-    const ExtensionContext context{world_, oracle_, extension_, workspaces_[0].get(),
-                                   &result_.counters};
+    const ExtensionContext context = Context(GrowthOracle());
     Merge({kStart, Connect(forest_.node(kStart), forest_.node(kGoal), context)}, kGoal);
+  }
+
+  ExtensionContext Context(const EdgeOracle& oracle) {
+    return {world_, oracle, extension_, workspaces_[0].get(), &result_.counters};
+  }
+
+  // Samples, unless they have promised too much.
+  const EdgeOracle& GrowthOracle() const {
+    return refused_ > kRefusals && refused_ > kRefusedPart * asked_ ? oracle_ : samples_;
+  }
+
+  // Whether start and goal are joined by a way whose every edge the oracle has accepted. Edges that
+  // it has not are mended or cut, and the search goes on.
+  bool ProveWay() {
+    if (!Solved()) return false;
+    const std::vector<int> way = forest_.Way(kStart, kGoal);
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      const int a = way[i - 1], b = way[i];
+      if (forest_.Proved(a, b)) continue;
+      ++asked_;
+      if (EdgeHolds(forest_.node(a), forest_.node(b), Context(oracle_))) {
+        forest_.MarkProved(a, b);
+      } else {
+        ++refused_;
+        Mend(a, b);
+      }
+    }
+    if (Solved()) result_.waypoints = forest_.Path(kStart, kGoal);
+    return Solved();
+  }
+
+  void Mend(int a, int b) {
+    forest_.Cut(a, b);
+    const Configuration from = forest_.node(a), to = forest_.node(b);
+    std::vector<Configuration> between;
+    if (!Bridge(from, to, options_.mendings, &between)) {
+      forest_.Miss(a);
+      forest_.Miss(b);
+      return;
+    }
+    int last = a;
+    for (const Configuration& q : between) {
+      const int next = forest_.Add(q, last);
+      forest_.MarkProved(last, next);
+      last = next;
+    }
+    forest_.Join(last, b);
+    forest_.MarkProved(last, b);
+  }
+
+  // The configurations between two, whose edge does not hold, of a way that does.
+  bool Bridge(const Configuration& from, const Configuration& to, int halvings,
+              std::vector<Configuration>* between) {
+    if (halvings == 0) return false;
+    const ExtensionContext context = Context(oracle_);
+    const auto halfway = Between(from, to, 0.5);
+    const auto middle = halfway ? MoveIntoSpace(*halfway, context) : halfway;
+    if (!middle) return false;
+    if (!EdgeHolds(from, *middle, context) && !Bridge(from, *middle, halvings - 1, between)) {
+      return false;
+    }
+    between->push_back(*middle);
+    return EdgeHolds(*middle, to, context) || Bridge(*middle, to, halvings - 1, between);
   }
 
   void RunBatch() {
@@ -68,11 +135,12 @@ class Search {
     const long limit = run_.iteration_limit - result_.iterations;
     const int count = static_cast<int>(std::min<long>(kBatchSize, limit));
     const std::array<GrowthKind, kBatchSize> kinds = PickKinds(count);
+    const EdgeOracle& oracle = GrowthOracle();
     std::array<ContactGrowth, kBatchSize> growths;
     RunJobs(count, run_.threads, [&](int i, int worker) {
       const auto iteration = static_cast<std::uint64_t>(result_.iterations + i);
       numeric::Rng rng = JobRng(run_.seed, iteration);
-      const ExtensionContext context{world_, oracle_, extension_,
+      const ExtensionContext context{world_, oracle, extension_,
                                      workspaces_[static_cast<std::size_t>(worker)].get(), nullptr};
       growths[static_cast<std::size_t>(i)] =
           GrowContacts(kinds[static_cast<std::size_t>(i)], forest_, trees, sampling_, limbs_,
@@ -123,7 +191,12 @@ class Search {
     std::vector<Configuration> nodes = link.chain.nodes;
     if (link.chain.reached) nodes.pop_back();
     const int last = Append(nodes, link.from);
-    if (link.chain.reached) forest_.Join(last, end);
+    // Asked at once, or an edge that was cut would come back again and again.
+    if (!link.chain.reached ||
+        !EdgeHolds(forest_.node(last), forest_.node(end), Context(oracle_))) {
+      return;
+    }
+    if (forest_.Join(last, end)) forest_.MarkProved(last, end);
   }
 
   int Append(const std::vector<Configuration>& nodes, int parent) {
@@ -134,6 +207,7 @@ class Search {
   const numeric::World& world_;
   const numeric::SamplingRules& sampling_;
   const EdgeOracle& oracle_;
+  const EdgeOracle samples_;
   const ExtensionOptions& extension_;
   const ContactGrowthOptions& options_;
   const RunOptions& run_;
@@ -142,6 +216,8 @@ class Search {
   Forest forest_;
   std::array<double, kNumGrowthKinds> effort_{};  // by GrowthKind
   std::array<long, kNumGrowthKinds> jobs_{};
+  long asked_ = 0;    // edges that samples had accepted
+  long refused_ = 0;  // of them
   PlanResult result_;
 };
 

@@ -24,18 +24,52 @@ int Forest::Add(const Configuration& q, int neighbour) {
 }
 
 // The smaller tree is renumbered, so that a node changes its number at most log2(size()) times.
-void Forest::Join(int a, int b) {
+bool Forest::Join(int a, int b) {
   int kept = tree(a), gone = tree(b);
-  if (kept == gone) return;
-  links_[static_cast<std::size_t>(a)].push_back(b);
-  links_[static_cast<std::size_t>(b)].push_back(a);
+  if (kept == gone) return false;
+  links_[static_cast<std::size_t>(a)].push_back({b});
+  links_[static_cast<std::size_t>(b)].push_back({a});
   if (members(kept).size() < members(gone).size()) std::swap(kept, gone);
   std::vector<int>& from = members_[static_cast<std::size_t>(gone)];
   std::vector<int>& to = members_[static_cast<std::size_t>(kept)];
   for (const int i : from) tree_[static_cast<std::size_t>(i)] = kept;
   to.insert(to.end(), from.begin(), from.end());
   from.clear();
+  return true;
 }
+
+void Forest::Cut(int a, int b) {
+  std::erase_if(links_[static_cast<std::size_t>(a)], [b](const Link& l) { return l.to == b; });
+  std::erase_if(links_[static_cast<std::size_t>(b)], [a](const Link& l) { return l.to == a; });
+  const int old = tree(b), fresh = static_cast<int>(members_.size());
+  std::vector<int> gone{b};
+  tree_[static_cast<std::size_t>(b)] = fresh;
+  for (std::size_t k = 0; k < gone.size(); ++k) {
+    for (const Link& next : links_[static_cast<std::size_t>(gone[k])]) {
+      int& number = tree_[static_cast<std::size_t>(next.to)];
+      if (number == fresh) continue;
+      number = fresh;
+      gone.push_back(next.to);
+    }
+  }
+  std::erase_if(members_[static_cast<std::size_t>(old)], [&](int i) { return tree(i) != old; });
+  members_.push_back(std::move(gone));
+}
+
+const Forest::Link& Forest::link(int a, int b) const {
+  const std::vector<Link>& links = links_[static_cast<std::size_t>(a)];
+  const auto found =
+      std::find_if(links.begin(), links.end(), [b](const Link& l) { return l.to == b; });
+  Require(found != links.end(), "no edge joins the nodes");
+  return *found;
+}
+
+void Forest::MarkProved(int a, int b) {
+  const_cast<Link&>(link(a, b)).proved = true;
+  const_cast<Link&>(link(b, a)).proved = true;
+}
+
+bool Forest::Proved(int a, int b) const { return link(a, b).proved; }
 
 std::vector<int> Forest::trees() const {
   std::vector<int> result;
@@ -89,19 +123,25 @@ std::vector<int> Forest::NearestOfOthers(const Configuration& q, int without, in
   return result;
 }
 
-std::vector<Configuration> Forest::Path(int a, int b) const {
+std::vector<int> Forest::Way(int a, int b) const {
   Require(tree(a) == tree(b), "no path joins nodes of two trees");
   std::vector<int> before(nodes_.size(), -1), open{b};
   before[static_cast<std::size_t>(b)] = b;
   for (std::size_t k = 0; k < open.size() && before[static_cast<std::size_t>(a)] < 0; ++k) {
-    for (const int next : links_[static_cast<std::size_t>(open[k])]) {
-      if (before[static_cast<std::size_t>(next)] >= 0) continue;
-      before[static_cast<std::size_t>(next)] = open[k];
-      open.push_back(next);
+    for (const Link& next : links_[static_cast<std::size_t>(open[k])]) {
+      if (before[static_cast<std::size_t>(next.to)] >= 0) continue;
+      before[static_cast<std::size_t>(next.to)] = open[k];
+      open.push_back(next.to);
     }
   }
-  std::vector<Configuration> path{node(a)};
-  for (int i = a; i != b; path.push_back(node(i))) i = before[static_cast<std::size_t>(i)];
+  std::vector<int> way{a};
+  while (way.back() != b) way.push_back(before[static_cast<std::size_t>(way.back())]);
+  return way;
+}
+
+std::vector<Configuration> Forest::Path(int a, int b) const {
+  std::vector<Configuration> path;
+  for (const int i : Way(a, b)) path.push_back(node(i));
   return path;
 }
 

@@ -181,16 +181,44 @@ TEST_CASE("the search gets up from the chair, the same way with any number of th
 }
 
 TEST_CASE("a search whose oracle never says yes ends at its limit with nothing") {
-  const Room room("stairs");
   const EdgeOracle undecided = [](const Edge&) { return Verdict::kUndecided; };
   const ExtensionOptions extension = Repairing();
+  for (const char* name : {"stairs", "floor"}) {
+    for (const double sample_step : {0.0, 0.05}) {
+      const Room room(name);
+      ContactGrowthOptions options;
+      options.sample_step = sample_step;
+      const PlanResult result =
+          PlanContacts(room.world, room.problem.sampling, room.problem.start, room.problem.goal,
+                       undecided, extension, options, Limited(1, 1, 40));
+      CHECK(result.stop == StopReason::kIterationLimit);
+      CHECK(result.iterations == 40);
+      CHECK(result.waypoints.empty());
+      if (sample_step == 0) CHECK(result.counters.edges_accepted == 0);
+    }
+  }
+}
+
+TEST_CASE("edges that only samples accept are mended or cut, and the way is all accepted") {
+  const Room room("chair_and_table");
+  // Refuses what samples do not see: edges longer than this.
+  const EdgeOracle samples = numeric::MakeSampledOracle(room.world, {kStep});
+  long refused = 0;
+  const EdgeOracle strict = [&](const Edge& edge) {
+    if (Distance(edge.from, edge.to) <= 0.2) return samples(edge);
+    ++refused;
+    return Verdict::kFails;
+  };
+  const ExtensionOptions extension = Repairing();
   const PlanResult result =
-      PlanContacts(room.world, room.problem.sampling, room.problem.start, room.problem.goal,
-                   undecided, extension, {}, Limited(1, 1, 40));
-  CHECK(result.stop == StopReason::kIterationLimit);
-  CHECK(result.iterations == 40);
-  CHECK(result.waypoints.empty());
-  CHECK(result.counters.edges_accepted == 0);
+      PlanContacts(room.world, room.problem.sampling, room.problem.start, room.problem.goal, strict,
+                   extension, {}, Limited(1, 1, 5000));
+  REQUIRE(result.stop == StopReason::kSolved);
+  CHECK(refused > 0);
+  CheckChain(room, result.waypoints.front(), result.waypoints);
+  for (std::size_t i = 1; i < result.waypoints.size(); ++i) {
+    CHECK(Distance(result.waypoints[i - 1], result.waypoints[i]) <= 0.2);
+  }
 }
 
 }  // namespace
