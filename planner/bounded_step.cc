@@ -13,22 +13,21 @@ using numeric::KinematicTree;
 
 // Bounds missed by less than this (m) need no task.
 constexpr double kSlack = 1e-6;
-// Block changes come to an end within a few rounds nearly always; then one change at a time, which
-// must [Murty 1974], and then the step at hand is taken: a further iterate mends what it lacks.
+// Block changes come to an end within some rounds nearly always; then one change at a time, which
+// must [Murty 1974].
 constexpr int kBlockRounds = 8;
-constexpr int kMaxRounds = 24;
 
 enum Side : char { kFree = 0, kLower = 1, kUpper = 2 };
 
 class Solver {
  public:
-  Solver(std::span<const TaskBound> bounds, const numeric::TaskStackOptions& options, int n,
+  Solver(std::span<const TaskBound> bounds, const BoundedStepOptions& options, int n,
          BoundedStepWorkspace* workspace)
-      : bounds_(bounds), ws_(*workspace) {
+      : bounds_(bounds), max_rounds_(options.max_rounds), ws_(*workspace) {
     const auto m = static_cast<Index>(bounds.size());
     ws_.weight.setOnes(n);
-    ws_.weight.head<3>().setConstant(1 / std::sqrt(options.translation_weight));
-    ws_.weight.segment<3>(3).setConstant(1 / std::sqrt(options.rotation_weight));
+    ws_.weight.head<3>().setConstant(1 / std::sqrt(options.clamps.translation_weight));
+    ws_.weight.segment<3>(3).setConstant(1 / std::sqrt(options.clamps.rotation_weight));
     ws_.rows.resize(n, m);
     ws_.gram.resize(m, m);
     ws_.step.setZero(n);
@@ -42,7 +41,7 @@ class Solver {
   }
 
   const VectorXd& Run(const KinematicTree& tree, const Configuration& q) {
-    for (int round = 0; round < kMaxRounds; ++round) {
+    for (int round = 0; round < max_rounds_; ++round) {
       if (!ChangeSides(round >= kBlockRounds) && !Freeze(tree, q)) break;
       Solve();
     }
@@ -139,6 +138,7 @@ class Solver {
   }
 
   std::span<const TaskBound> bounds_;
+  const int max_rounds_;
   BoundedStepWorkspace& ws_;
 };
 
@@ -157,14 +157,13 @@ double ClampScale(const numeric::TaskStackOptions& options, const VectorXd& step
 }  // namespace
 
 VectorXd SolveBoundedStep(const KinematicTree& tree, const Configuration& q,
-                          std::span<const TaskBound> bounds,
-                          const numeric::TaskStackOptions& options,
+                          std::span<const TaskBound> bounds, const BoundedStepOptions& options,
                           BoundedStepWorkspace* workspace) {
   const int n = tree.num_velocities();
   if (bounds.empty()) return VectorXd::Zero(n);
   const VectorXd step =
       Solver(bounds, options, n, workspace).Run(tree, q).cwiseProduct(workspace->weight);
-  return ClampScale(options, step) * step;
+  return ClampScale(options.clamps, step) * step;
 }
 
 }  // namespace cguide::planner

@@ -17,6 +17,12 @@ struct TaskBound {
   double compliance = 1e-3;
 };
 
+struct BoundedStepOptions {
+  numeric::TaskStackOptions clamps;  ///< weights and clamps; its damping has no part here
+  /** Changes of the active set until the step at hand is taken, optimal or not. */
+  int max_rounds = 50;
+};
+
 /** Scratch of SolveBoundedStep. */
 struct BoundedStepWorkspace {
   Eigen::MatrixXd rows;  ///< a scaled row in each column
@@ -32,11 +38,10 @@ struct BoundedStepWorkspace {
  on its dual [Portugal, Judice, Vicente 1994]: bounds that the step violates join the active set,
  those that pull the wrong way leave it. Unlike in a stack of equalities a bound that another one
  more than fulfils asks for nothing. Columns that the step would carry beyond their joint's limits
- are removed; then the step is scaled into the clamps as a whole.
- @param options weights and clamps; its damping has no part here. */
+ are removed; then the step is scaled into the clamps as a whole. */
 Eigen::VectorXd SolveBoundedStep(const numeric::KinematicTree& tree, const Configuration& q,
                                  std::span<const TaskBound> bounds,
-                                 const numeric::TaskStackOptions& options,
+                                 const BoundedStepOptions& options,
                                  BoundedStepWorkspace* workspace);
 
 }  // namespace cguide::planner

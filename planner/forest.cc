@@ -10,6 +10,15 @@ namespace {
 
 constexpr double kMissLength = 0.03;  // m or rad that one failed extension counts
 
+// Of the links of a node the one to another.
+template <typename Links>
+auto& Find(Links& links, int to) {
+  const auto found =
+      std::find_if(links.begin(), links.end(), [to](const auto& link) { return link.to == to; });
+  Require(found != links.end(), "no edge joins the nodes");
+  return *found;
+}
+
 }  // namespace
 
 int Forest::Add(const Configuration& q, int neighbour) {
@@ -56,20 +65,14 @@ void Forest::Cut(int a, int b) {
   members_.push_back(std::move(gone));
 }
 
-const Forest::Link& Forest::link(int a, int b) const {
-  const std::vector<Link>& links = links_[static_cast<std::size_t>(a)];
-  const auto found =
-      std::find_if(links.begin(), links.end(), [b](const Link& l) { return l.to == b; });
-  Require(found != links.end(), "no edge joins the nodes");
-  return *found;
-}
-
 void Forest::MarkProved(int a, int b) {
-  const_cast<Link&>(link(a, b)).proved = true;
-  const_cast<Link&>(link(b, a)).proved = true;
+  Find(links_[static_cast<std::size_t>(a)], b).proved = true;
+  Find(links_[static_cast<std::size_t>(b)], a).proved = true;
 }
 
-bool Forest::Proved(int a, int b) const { return link(a, b).proved; }
+bool Forest::Proved(int a, int b) const {
+  return Find(links_[static_cast<std::size_t>(a)], b).proved;
+}
 
 std::vector<int> Forest::trees() const {
   std::vector<int> result;

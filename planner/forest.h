@@ -61,8 +61,6 @@ class Forest {
     int to = -1;
     bool proved = false;
   };
-  const Link& link(int a, int b) const;
-
   std::vector<Configuration> nodes_;
   std::vector<std::vector<Link>> links_;
   std::vector<int> misses_;

@@ -15,9 +15,9 @@ using test::Room;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Clamps that no step of these tests meets.
-numeric::TaskStackOptions Wide() {
-  numeric::TaskStackOptions options;
-  options.max_translation = options.max_rotation = 1e9;
+BoundedStepOptions Wide() {
+  BoundedStepOptions options;
+  options.clamps.max_translation = options.clamps.max_rotation = 1e9;
   return options;
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("no step carries a joint beyond its limit, and the others take over") 
 TEST_CASE("a step beyond a clamp is scaled as a whole") {
   Fixture f;
   const std::vector<TaskBound> bounds{Bound(f.Unit(0) + 2 * f.Unit(1), 3, kInfinity)};
-  const VectorXd step = SolveBoundedStep(f.tree, f.q, bounds, {}, &f.workspace);
+  const VectorXd step = SolveBoundedStep(f.tree, f.q, bounds, BoundedStepOptions{}, &f.workspace);
   CHECK(step.head<3>().norm() == Approx(0.1));
   CHECK(step[1] == Approx(2 * step[0]));
 }
