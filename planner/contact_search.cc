@@ -13,6 +13,7 @@ namespace {
 constexpr int kStart = 0, kGoal = 1;  // nodes of the forest
 // Where the oracle refuses more edges than these, and more than this part of those it is asked
 // about, it is asked at once.
+constexpr std::uint64_t kDetourStream = 0xde7002ull << 32;  // of random numbers
 constexpr long kRefusals = 20;
 constexpr double kRefusedPart = 0.4;
 
@@ -89,30 +90,68 @@ class Search {
         forest_.MarkProved(a, b);
       } else {
         ++refused_;
-        Mend(a, b);
+        Mend(way, i);
       }
     }
-    if (Solved()) result_.waypoints = forest_.Path(kStart, kGoal);
-    return Solved();
+    if (!Solved() || !IsProved(forest_.Way(kStart, kGoal))) return false;
+    result_.waypoints = forest_.Path(kStart, kGoal);
+    return true;
   }
 
-  void Mend(int a, int b) {
-    forest_.Cut(a, b);
-    const Configuration from = forest_.node(a), to = forest_.node(b);
-    std::vector<Configuration> between;
-    if (!Bridge(from, to, options_.mendings, &between)) {
-      forest_.Miss(a);
-      forest_.Miss(b);
+  bool IsProved(const std::vector<int>& way) const {
+    for (std::size_t i = 1; i < way.size(); ++i) {
+      if (!forest_.Proved(way[i - 1], way[i])) return false;
+    }
+    return true;
+  }
+
+  // In place of the edge to way[i], which does not hold. Where no way past it is found one of its
+  // ends may be at fault, which holds by a hair: then past those too.
+  void Mend(const std::vector<int>& way, std::size_t i) {
+    forest_.Cut(way[i - 1], way[i]);
+    for (const auto& [before, after] :
+         {std::pair<std::size_t, std::size_t>{1, 0}, {2, 0}, {1, 1}, {2, 1}}) {
+      if (i < before || i + after >= way.size()) continue;
+      const int a = way[i - before], b = way[i + after];
+      const Configuration from = forest_.node(a), to = forest_.node(b);
+      std::vector<Configuration> between;
+      if (!Bridge(from, to, options_.mendings, &between) && !Detour(from, to, &between)) continue;
+      Insert(a, between, b);
       return;
     }
-    int last = a;
+    forest_.Miss(way[i - 1]);
+    forest_.Miss(way[i]);
+  }
+
+  // Joins two trees by proved edges.
+  void Insert(int a, const std::vector<Configuration>& between, int b) {
     for (const Configuration& q : between) {
-      const int next = forest_.Add(q, last);
-      forest_.MarkProved(last, next);
-      last = next;
+      const int next = forest_.Add(q, a);
+      forest_.MarkProved(a, next);
+      a = next;
     }
-    forest_.Join(last, b);
-    forest_.MarkProved(last, b);
+    if (forest_.Join(a, b)) forest_.MarkProved(a, b);
+  }
+
+  // A way past what is wrong with the straight one: over configurations beside its middle, farther
+  // and farther away.
+  bool Detour(const Configuration& from, const Configuration& to,
+              std::vector<Configuration>* between) {
+    numeric::Rng rng = JobRng(run_.seed, kDetourStream + static_cast<std::uint64_t>(refused_));
+    const ExtensionContext context = Context(oracle_);
+    const auto halfway = Between(from, to, 0.5);
+    for (int i = 0; halfway && i < options_.detours; ++i) {
+      const double reach = options_.detour_reach * (i + 1) / options_.detours;
+      Eigen::VectorXd aside(world_.tree().num_velocities());
+      for (double& x : aside) x = reach * (2 * numeric::Uniform(rng) - 1);
+      const auto middle = MoveIntoSpace(numeric::Integrate(*halfway, aside), context);
+      between->clear();
+      if (!middle) continue;
+      if (!EdgeHolds(from, *middle, context) && !Bridge(from, *middle, 1, between)) continue;
+      between->push_back(*middle);
+      if (EdgeHolds(*middle, to, context) || Bridge(*middle, to, 1, between)) return true;
+    }
+    return false;
   }
 
   // The configurations between two, whose edge does not hold, of a way that does.
