@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 
+#include "cguide/exact/core/error.h"
 #include "cguide/numeric/sampled_edge.h"
 #include "cguide/planner/batch.h"
 
@@ -197,10 +198,15 @@ class Search {
     std::array<GrowthKind, kBatchSize> kinds{};
     std::array<double, kNumGrowthKinds> spent = effort_;
     for (int i = 0; i < count; ++i) {
-      std::size_t best = 0;
+      std::size_t best = kNumGrowthKinds;
       for (std::size_t k = 0; k < kNumGrowthKinds; ++k) {
-        if (spent[k] * options_.shares[best] < spent[best] * options_.shares[k]) best = k;
+        if (options_.shares[k] <= 0) continue;
+        if (best == kNumGrowthKinds ||
+            spent[k] * options_.shares[best] < spent[best] * options_.shares[k]) {
+          best = k;
+        }
       }
+      Require(best < kNumGrowthKinds, "no kind of growth has a share");
       kinds[static_cast<std::size_t>(i)] = static_cast<GrowthKind>(best);
       spent[best] += (1 + effort_[best]) / (1 + static_cast<double>(jobs_[best]));
     }
