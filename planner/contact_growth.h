@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cguide/numeric/sampling.h"
+#include "cguide/planner/detour.h"
 #include "cguide/planner/extension.h"
 #include "cguide/planner/forest.h"
 #include "cguide/planner/limb_step.h"
@@ -37,9 +38,7 @@ struct ContactGrowthOptions {
   /** Trees grow by edges that hold at samples so far apart (metric of path.h); only those of a way
    from start to goal are asked of the oracle. 0: every edge is. */
   double sample_step = 0.05;
-  int mendings = 2;            ///< halvings of an edge of the way that the oracle does not accept
-  int detours = 12;            ///< ways past it that are tried then
-  double detour_reach = 0.15;  ///< how far they may lead aside (m, rad)
+  DetourOptions detour;  ///< past edges of the way that the oracle does not accept
 };
 
 /** A chain from a node of one tree towards another node. */

@@ -106,19 +106,14 @@ class Search {
     return true;
   }
 
-  // In place of the edge to way[i], which does not hold. Where no way past it is found one of its
-  // ends may be at fault, which holds by a hair: then past those too.
+  // In place of the edge to way[i], which does not hold.
   void Mend(const std::vector<int>& way, std::size_t i) {
     forest_.Cut(way[i - 1], way[i]);
-    for (const auto& [before, after] :
-         {std::pair<std::size_t, std::size_t>{1, 0}, {2, 0}, {1, 1}, {2, 1}}) {
-      if (i < before || i + after >= way.size()) continue;
-      const int a = way[i - before], b = way[i + after];
-      const Configuration from = forest_.node(a), to = forest_.node(b);
-      std::vector<Configuration> between;
-      if (!Bridge(from, to, options_.mendings, &between) && !Detour(from, to, &between)) continue;
-      Insert(a, between, b);
-      return;
+    std::vector<Configuration> path;
+    for (const int node : way) path.push_back(forest_.node(node));
+    numeric::Rng rng = JobRng(run_.seed, kDetourStream + static_cast<std::uint64_t>(refused_));
+    if (const auto mending = MendEdge(path, i, options_.detour, Context(oracle_), rng)) {
+      return Insert(way[mending->first], mending->between, way[mending->last]);
     }
     forest_.Miss(way[i - 1]);
     forest_.Miss(way[i]);
@@ -132,42 +127,6 @@ class Search {
       a = next;
     }
     if (forest_.Join(a, b)) forest_.MarkProved(a, b);
-  }
-
-  // A way past what is wrong with the straight one: over configurations beside its middle, farther
-  // and farther away.
-  bool Detour(const Configuration& from, const Configuration& to,
-              std::vector<Configuration>* between) {
-    numeric::Rng rng = JobRng(run_.seed, kDetourStream + static_cast<std::uint64_t>(refused_));
-    const ExtensionContext context = Context(oracle_);
-    const auto halfway = Between(from, to, 0.5);
-    for (int i = 0; halfway && i < options_.detours; ++i) {
-      const double reach = options_.detour_reach * (i + 1) / options_.detours;
-      Eigen::VectorXd aside(world_.tree().num_velocities());
-      for (double& x : aside) x = reach * (2 * numeric::Uniform(rng) - 1);
-      const auto middle = MoveIntoSpace(numeric::Integrate(*halfway, aside), context);
-      between->clear();
-      if (!middle) continue;
-      if (!EdgeHolds(from, *middle, context) && !Bridge(from, *middle, 1, between)) continue;
-      between->push_back(*middle);
-      if (EdgeHolds(*middle, to, context) || Bridge(*middle, to, 1, between)) return true;
-    }
-    return false;
-  }
-
-  // The configurations between two, whose edge does not hold, of a way that does.
-  bool Bridge(const Configuration& from, const Configuration& to, int halvings,
-              std::vector<Configuration>* between) {
-    if (halvings == 0) return false;
-    const ExtensionContext context = Context(oracle_);
-    const auto halfway = Between(from, to, 0.5);
-    const auto middle = halfway ? MoveIntoSpace(*halfway, context) : halfway;
-    if (!middle) return false;
-    if (!EdgeHolds(from, *middle, context) && !Bridge(from, *middle, halvings - 1, between)) {
-      return false;
-    }
-    between->push_back(*middle);
-    return EdgeHolds(*middle, to, context) || Bridge(*middle, to, halvings - 1, between);
   }
 
   void RunBatch() {
