@@ -1,7 +1,7 @@
 #include "cguide/planner/contact_growth.h"
 
 #include <algorithm>
-#include <numeric>
+#include <limits>
 
 namespace cguide::planner {
 namespace {
@@ -9,6 +9,8 @@ namespace {
 constexpr double kShareOfHeights = 0.3;  // translations that go for the place's height too
 constexpr int kPostureWalk = 3;          // extensions towards a posture or a limb's
 constexpr int kNearTrees = 3;            // a link goes to one of so many trees
+constexpr double kEdgeEffort = 3;        // Newton steps that take as long as testing an edge
+constexpr int kLinkTries = 8;            // nodes of which the nearest to another tree is linked
 constexpr double kThere = 0.05;          // places nearer than this are reached (m)
 
 class Grower {
@@ -26,10 +28,10 @@ class Grower {
     context_.counters = &growth_.counters;
   }
 
-  ContactGrowth Run() {
+  ContactGrowth Run(GrowthKind kind) {
     growth_.counters.samples = 1;
     sample_ = numeric::SampleConfiguration(sampling_, context_.world.model().robot, rng_);
-    growth_.kind = PickKind();
+    growth_.kind = kind;
     if (growth_.kind == GrowthKind::kSeed) {
       Plant();
     } else {
@@ -46,16 +48,6 @@ class Grower {
   std::size_t Pick(std::size_t n) {
     return std::min(n - 1,
                     static_cast<std::size_t>(numeric::Uniform(rng_) * static_cast<double>(n)));
-  }
-
-  GrowthKind PickKind() {
-    const auto& shares = options_.shares;
-    double rest = numeric::Uniform(rng_) * std::accumulate(shares.begin(), shares.end(), 0.0);
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      if (rest < shares[i]) return static_cast<GrowthKind>(i);
-      rest -= shares[i];
-    }
-    return GrowthKind::kSample;
   }
 
   int PickTree() {
@@ -127,23 +119,37 @@ class Grower {
     WalkTo(target, kPostureWalk);
   }
 
+  // Of a few random nodes the one nearest to another tree: trees are close to each other in few
+  // places. `near` becomes it, so that a failure counts against it.
   void LinkNear() {
-    const std::vector<int> others = forest_.NearestOfOthers(Near(), tree_, kNearTrees);
-    const int other = others[Pick(others.size())];
-    growth_.links.push_back({other, Approach(forest_.node(other), Near(), true)});
+    const std::vector<int>& members = forest_.members(tree_);
+    double least = std::numeric_limits<double>::infinity();
+    int other = -1;
+    for (int i = 0; i < kLinkTries; ++i) {
+      const int candidate = members[Pick(members.size())];
+      const std::vector<int> others =
+          forest_.NearestOfOthers(forest_.node(candidate), tree_, kNearTrees);
+      const int offered = others[Pick(others.size())];
+      const double cost = forest_.Cost(forest_.node(candidate), offered) +
+                          forest_.Cost(forest_.node(offered), candidate);
+      if (cost >= least) continue;
+      least = cost;
+      growth_.near = candidate;
+      other = offered;
+    }
+    growth_.links.push_back({other, Approach(forest_.node(other), Near())});
   }
 
   void LinkEnd() {
     const Configuration& end = growth_.nodes.back();
     for (const int i : forest_.NearestOfOthers(end, tree_, options_.links)) {
-      const bool step = numeric::Uniform(rng_) < options_.step_links;
-      growth_.links.push_back({i, Approach(forest_.node(i), end, step)});
+      growth_.links.push_back({i, Connect(forest_.node(i), end, context_)});
     }
   }
 
-  Chain Approach(const Configuration& from, const Configuration& target, bool step) {
+  Chain Approach(const Configuration& from, const Configuration& target) {
     Chain chain = Connect(from, target, context_);
-    if (chain.reached || !step || (from.X_WB.p - target.X_WB.p).norm() > options_.link_reach) {
+    if (chain.reached || (from.X_WB.p - target.X_WB.p).norm() > options_.link_reach) {
       return chain;
     }
     return StepTowards(from, target, limbs_, options_.step, context_);
@@ -195,11 +201,16 @@ class Grower {
 
 }  // namespace
 
-ContactGrowth GrowContacts(const Forest& forest, const std::vector<int>& trees,
+double GrowthEffort(const PlannerCounters& counters) {
+  return static_cast<double>(counters.newton_steps) +
+         kEdgeEffort * static_cast<double>(counters.edges_tested);
+}
+
+ContactGrowth GrowContacts(GrowthKind kind, const Forest& forest, const std::vector<int>& trees,
                            const numeric::SamplingRules& sampling, const std::vector<Limb>& limbs,
                            const ContactGrowthOptions& options, ExtensionContext context,
                            numeric::Rng& rng) {
-  return Grower(forest, trees, sampling, limbs, options, context, rng).Run();
+  return Grower(forest, trees, sampling, limbs, options, context, rng).Run(kind);
 }
 
 }  // namespace cguide::planner

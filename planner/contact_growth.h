@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cguide/numeric/sampling.h"
+#include "cguide/planner/detour.h"
 #include "cguide/planner/extension.h"
 #include "cguide/planner/forest.h"
 #include "cguide/planner/limb_step.h"
@@ -24,17 +25,20 @@ enum class GrowthKind {
 inline constexpr int kNumGrowthKinds = 8;
 
 struct ContactGrowthOptions {
-  /** Shares of the iterations, by GrowthKind. */
-  std::array<double, kNumGrowthKinds> shares{0.12, 0.08, 0.12, 0.08, 0.08, 0.08, 0.34, 0.1};
+  /** Shares of the effort (GrowthEffort), by GrowthKind. */
+  std::array<double, kNumGrowthKinds> shares{0.5, 0.05, 0.05, 0.05, 0.05, 0.1, 0.2, 0};
   int max_seeds = 12;         ///< trees besides those of start and goal; no more are planted
   double seed_growth = 0.25;  ///< share of the other growth that any tree gets, not these two
   int max_walk = 20;          ///< extensions of a translation
   int max_steps = 5;          ///< strides of the root on the way to a place
   double stride = 0.35;       ///< how far the root moves at once where limbs are placed (m)
-  int links = 2;              ///< trees that a new node is connected with
-  double step_links = 0.3;    ///< share of those links for which limbs are placed
+  int links = 1;              ///< trees that a new node is connected with
   double link_reach = 0.5;    ///< for roots that are no farther apart (m)
   LimbStepOptions step;
+  /** Trees grow by edges that hold at samples so far apart (metric of path.h); only those of a way
+   from start to goal are asked of the oracle. 0: every edge is. */
+  double sample_step = 0.05;
+  DetourOptions detour;  ///< past edges of the way that the oracle does not accept
 };
 
 /** A chain from a node of one tree towards another node. */
@@ -52,9 +56,12 @@ struct ContactGrowth {
   PlannerCounters counters;
 };
 
-/** One iteration. Nodes 0 and 1 of the forest are start and goal; its trees are given as
+/** What an iteration cost, in Newton steps: a measure that no clock disturbs. */
+double GrowthEffort(const PlannerCounters& counters);
+
+/** One iteration of a kind. Nodes 0 and 1 of the forest are start and goal; its trees are given as
  Forest::trees lists them. Depends on its arguments alone. */
-ContactGrowth GrowContacts(const Forest& forest, const std::vector<int>& trees,
+ContactGrowth GrowContacts(GrowthKind kind, const Forest& forest, const std::vector<int>& trees,
                            const numeric::SamplingRules& sampling, const std::vector<Limb>& limbs,
                            const ContactGrowthOptions& options, ExtensionContext context,
                            numeric::Rng& rng);

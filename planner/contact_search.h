@@ -14,6 +14,10 @@ namespace cguide::planner {
  configurations could be brought into the space, which find the way through narrow passages from
  within. Trees grow in the ways of GrowthKind, grow together where a connection is found, and nodes
  from which growth failed are taken for farther away, so that the search does not insist on them.
+
+ Trees grow by edges that hold at samples, which cost a tenth of a proof. Where start and goal are
+ joined the edges of the way are asked of the oracle; those that it does not accept are mended by
+ a way past them, else cut, and the search goes on.
  @param extension with `repair` set, in Space::kGuide.
  @param start,goal in the space already.
  @pre the oracle may be called from `run.threads` threads.

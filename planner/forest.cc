@@ -10,6 +10,15 @@ namespace {
 
 constexpr double kMissLength = 0.03;  // m or rad that one failed extension counts
 
+// Of the links of a node the one to another.
+template <typename Links>
+auto& Find(Links& links, int to) {
+  const auto found =
+      std::find_if(links.begin(), links.end(), [to](const auto& link) { return link.to == to; });
+  Require(found != links.end(), "no edge joins the nodes");
+  return *found;
+}
+
 }  // namespace
 
 int Forest::Add(const Configuration& q, int neighbour) {
@@ -24,17 +33,45 @@ int Forest::Add(const Configuration& q, int neighbour) {
 }
 
 // The smaller tree is renumbered, so that a node changes its number at most log2(size()) times.
-void Forest::Join(int a, int b) {
+bool Forest::Join(int a, int b) {
   int kept = tree(a), gone = tree(b);
-  if (kept == gone) return;
-  links_[static_cast<std::size_t>(a)].push_back(b);
-  links_[static_cast<std::size_t>(b)].push_back(a);
+  if (kept == gone) return false;
+  links_[static_cast<std::size_t>(a)].push_back({b});
+  links_[static_cast<std::size_t>(b)].push_back({a});
   if (members(kept).size() < members(gone).size()) std::swap(kept, gone);
   std::vector<int>& from = members_[static_cast<std::size_t>(gone)];
   std::vector<int>& to = members_[static_cast<std::size_t>(kept)];
   for (const int i : from) tree_[static_cast<std::size_t>(i)] = kept;
   to.insert(to.end(), from.begin(), from.end());
   from.clear();
+  return true;
+}
+
+void Forest::Cut(int a, int b) {
+  std::erase_if(links_[static_cast<std::size_t>(a)], [b](const Link& l) { return l.to == b; });
+  std::erase_if(links_[static_cast<std::size_t>(b)], [a](const Link& l) { return l.to == a; });
+  const int old = tree(b), fresh = static_cast<int>(members_.size());
+  std::vector<int> gone{b};
+  tree_[static_cast<std::size_t>(b)] = fresh;
+  for (std::size_t k = 0; k < gone.size(); ++k) {
+    for (const Link& next : links_[static_cast<std::size_t>(gone[k])]) {
+      int& number = tree_[static_cast<std::size_t>(next.to)];
+      if (number == fresh) continue;
+      number = fresh;
+      gone.push_back(next.to);
+    }
+  }
+  std::erase_if(members_[static_cast<std::size_t>(old)], [&](int i) { return tree(i) != old; });
+  members_.push_back(std::move(gone));
+}
+
+void Forest::MarkProved(int a, int b) {
+  Find(links_[static_cast<std::size_t>(a)], b).proved = true;
+  Find(links_[static_cast<std::size_t>(b)], a).proved = true;
+}
+
+bool Forest::Proved(int a, int b) const {
+  return Find(links_[static_cast<std::size_t>(a)], b).proved;
 }
 
 std::vector<int> Forest::trees() const {
@@ -45,14 +82,17 @@ std::vector<int> Forest::trees() const {
   return result;
 }
 
+double Forest::Cost(const Configuration& q, int i) const {
+  return Distance(node(i), q) + kMissLength * misses_[static_cast<std::size_t>(i)];
+}
+
 int Forest::Nearest(const Configuration& q, int tree) const {
   int best = -1;
   double best_distance = std::numeric_limits<double>::infinity();
   for (const int i : members(tree)) {
     // The translation alone is a lower bound and far cheaper than the whole metric.
     if ((node(i).X_WB.p - q.X_WB.p).squaredNorm() >= best_distance * best_distance) continue;
-    const double distance =
-        Distance(node(i), q) + kMissLength * misses_[static_cast<std::size_t>(i)];
+    const double distance = Cost(q, i);
     if (distance < best_distance) {
       best_distance = distance;
       best = i;
@@ -86,19 +126,25 @@ std::vector<int> Forest::NearestOfOthers(const Configuration& q, int without, in
   return result;
 }
 
-std::vector<Configuration> Forest::Path(int a, int b) const {
+std::vector<int> Forest::Way(int a, int b) const {
   Require(tree(a) == tree(b), "no path joins nodes of two trees");
   std::vector<int> before(nodes_.size(), -1), open{b};
   before[static_cast<std::size_t>(b)] = b;
   for (std::size_t k = 0; k < open.size() && before[static_cast<std::size_t>(a)] < 0; ++k) {
-    for (const int next : links_[static_cast<std::size_t>(open[k])]) {
-      if (before[static_cast<std::size_t>(next)] >= 0) continue;
-      before[static_cast<std::size_t>(next)] = open[k];
-      open.push_back(next);
+    for (const Link& next : links_[static_cast<std::size_t>(open[k])]) {
+      if (before[static_cast<std::size_t>(next.to)] >= 0) continue;
+      before[static_cast<std::size_t>(next.to)] = open[k];
+      open.push_back(next.to);
     }
   }
-  std::vector<Configuration> path{node(a)};
-  for (int i = a; i != b; path.push_back(node(i))) i = before[static_cast<std::size_t>(i)];
+  std::vector<int> way{a};
+  while (way.back() != b) way.push_back(before[static_cast<std::size_t>(way.back())]);
+  return way;
+}
+
+std::vector<Configuration> Forest::Path(int a, int b) const {
+  std::vector<Configuration> path;
+  for (const int i : Way(a, b)) path.push_back(node(i));
   return path;
 }
 

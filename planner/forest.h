@@ -13,8 +13,16 @@ class Forest {
   /** Adds a node joined to `neighbour`, or a tree of its own (-1). Returns its index. */
   int Add(const Configuration& q, int neighbour);
 
-  /** Joins two trees by an edge between a node of each. Nothing happens within one tree. */
-  void Join(int a, int b);
+  /** Joins two trees by an edge between a node of each. Nothing happens within one tree; says
+   whether it did. */
+  bool Join(int a, int b);
+
+  /** Takes away the edge between a and b, which parts their tree in two. */
+  void Cut(int a, int b);
+
+  /** Notes that the edge between a and b, which there is, has been proved. */
+  void MarkProved(int a, int b);
+  bool Proved(int a, int b) const;
 
   int size() const { return static_cast<int>(nodes_.size()); }
   const Configuration& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
@@ -32,6 +40,9 @@ class Forest {
    little each time, so that nodes with no way on are left alone. */
   void Miss(int i) { ++misses_[static_cast<std::size_t>(i)]; }
 
+  /** The distance from q to node i with its misses. */
+  double Cost(const Configuration& q, int i) const;
+
   /** The node of a tree nearest to q in the metric of path.h, the first of equals. */
   int Nearest(const Configuration& q, int tree) const;
 
@@ -41,12 +52,17 @@ class Forest {
   /** Of each of the `count` nearest trees but `without` the node nearest to q, nearest first. */
   std::vector<int> NearestOfOthers(const Configuration& q, int without, int count) const;
 
-  /** The way from a to b through their tree. */
+  /** The nodes on the way from a to b through their tree, both included. */
+  std::vector<int> Way(int a, int b) const;
   std::vector<Configuration> Path(int a, int b) const;
 
  private:
+  struct Link {
+    int to = -1;
+    bool proved = false;
+  };
   std::vector<Configuration> nodes_;
-  std::vector<std::vector<int>> links_;
+  std::vector<std::vector<Link>> links_;
   std::vector<int> misses_;
   std::vector<int> tree_;
   std::vector<std::vector<int>> members_;

@@ -83,6 +83,7 @@ class Stepper {
     if (context.options.repair) repair_ = *context.options.repair;
     repair_.ignored.assign(context.world.tree().bodies.size(), 0);
     for (const int body : limb.bodies) repair_.ignored[static_cast<std::size_t>(body)] = 1;
+    repair_.slide_compliance = options.slide_compliance;
   }
 
   Chain Run(const Configuration& from, std::vector<LedSite> sites) {

@@ -15,7 +15,8 @@ struct LimbStepOptions {
   double placed = 0.01;      ///< and from its end (m)
   int end_iterations = 20;   ///< of the search for the last posture
   int halvings = 3;          ///< of an edge that the oracle does not accept
-  double least_move = 0.03;  ///< limbs displaced by less stay where they are (m)
+  double slide_compliance = 0.05;  ///< of the other contacts (RepairOptions)
+  double least_move = 0.03;        ///< limbs displaced by less stay where they are (m)
 };
 
 /** Changes one limb's contacts on purpose: with the centre of mass over the contacts of the rest of

@@ -7,6 +7,7 @@
 #include "cguide/numeric/near_pairs.h"
 #include "cguide/numeric/task_stack.h"
 #include "cguide/numeric/world.h"
+#include "cguide/planner/bounded_step.h"
 
 namespace cguide::planner {
 
@@ -37,13 +38,6 @@ struct ProjectionResult {
   int iterations = 0;  ///< Newton steps taken
 };
 
-/** lower <= row . v <= upper for a velocity v. */
-struct TaskBound {
-  Eigen::VectorXd row;
-  double lower = 0;
-  double upper = 0;
-};
-
 /** Scratch of one thread, for Project and Repair. */
 struct ProjectionWorkspace {
   explicit ProjectionWorkspace(const numeric::World& world) : guide(world) {}
@@ -54,7 +48,7 @@ struct ProjectionWorkspace {
   Eigen::MatrixXd com_jacobian;
   std::vector<numeric::NearPair> pairs;
   std::vector<TaskBound> bounds;
-  std::vector<char> active;
+  BoundedStepWorkspace bounded;
   Eigen::VectorXd row;
 };
 

@@ -3,6 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <numeric>
+
+#include "cguide/planner/support_shift.h"
 
 namespace cguide::planner {
 namespace {
@@ -18,7 +21,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kStalledStep = 1e-6;
 // Bounds missed by less than this (m) need no task.
 constexpr double kSlack = 1e-6;
-constexpr int kMaxRounds = 4;         // of the active set
 constexpr int kMaxWanted = 24;        // sites that may be asked into contact
 constexpr double kMaxComShift = 0.3;  // lines of support farther away than this are no help (m)
 constexpr double kLowBand = 0.2;      // contacts are kept within these parts of epsilon
@@ -27,10 +29,29 @@ constexpr double kAim = 0.5;         // where further ones are brought
 constexpr std::size_t kHistory = 3;  // steps after which goals must have come nearer
 constexpr double kNeededGain = 0.5;  // to this part of their error
 
-// direction . c >= offset for a centre of mass c that the contacts can balance.
+constexpr std::size_t kLines = 2;  // lines of support, those found last
+// Of the active set of a step: what it lacks of the optimum the next step makes good. Six take a
+// third less time than as many as it takes, and repair as many samples within a few in a hundred.
+constexpr int kRounds = 6;
+// What gives way first where bounds conflict: goals, then balance, then contacts.
+constexpr double kPairCompliance = 5e-5;
+constexpr double kContactCompliance = 2e-4;
+constexpr double kBalanceCompliance = 5e-4;
+constexpr double kWantedCompliance = 1e-3;
+constexpr double kGoalCompliance = 1e-2;
+
+// direction . (c - sum load_k x_k) >= offset for a centre of mass c that the contacts can balance;
+// it moves with the points x_k that bear the robot at the line, or the feet would go with the
+// centre.
 struct SupportLine {
+  struct Point {
+    int body;
+    Vector3d p_B;
+    double load;
+  };
   Vector3d direction;
   double offset = 0;
+  std::vector<Point> points;
 };
 
 class Repairer {
@@ -110,14 +131,17 @@ class Repairer {
     count_ = 0;
     if (!stable_) ++unstable_;
     AddPairs();
+    FindSites();
+    AddContacts();
     if (!stable_ && (!FindSupportLine() || unstable_ % options_.patience == 0)) {
       ++wanted_;
       lines_.clear();  // they were of fewer contacts
+      FindSites();
     }
     AddBalance();
     const std::size_t before = count_;
     while (true) {
-      AddContacts();
+      AddWanted();
       AddGoals();
       VectorXd step = Solve(q);
       if (stable_ || step.cwiseAbs().maxCoeff() >= kStalledStep || wanted_ >= kMaxWanted) {
@@ -125,15 +149,17 @@ class Repairer {
       }
       ++wanted_;
       count_ = before;
+      FindSites();
     }
   }
 
   // Room for one more bound lower <= row . v <= upper; its row is scratch still.
-  TaskBound& NextBound(double lower, double upper) {
+  TaskBound& NextBound(double lower, double upper, double compliance) {
     if (ws_.bounds.size() <= count_) ws_.bounds.emplace_back();
     TaskBound& bound = ws_.bounds[count_++];
     bound.lower = lower;
     bound.upper = upper;
+    bound.compliance = compliance;
     return bound;
   }
 
@@ -142,23 +168,69 @@ class Repairer {
     for (const NearPair& pair : ws_.pairs) {
       double lower = options_.clearance - pair.distance;
       if (lower > 0) lower += options_.clearance;
-      TaskBound& bound = NextBound(lower, kInfinity);
+      TaskBound& bound = NextBound(lower, kInfinity, kPairCompliance);
       numeric::NearPairRow(world_.tree(), state(), pair, &bound.row, &ws_.row);
     }
   }
 
-  // With the contacts where they are, y of the separating wrench keeps separating when the centre
-  // of mass moves by d, turned into (y_f + y_m x d, y_m), as long as (g x y_m) . d < -y_f . g: a
-  // line that the centre of mass must cross.
+  // With the contacts where they are. Sites inside an obstacle are on their way out, as contacts.
   bool FindSupportLine() {
-    if (stability_.verdict != Verdict::kFails) return false;
-    const Vector3d g = world_.model().gravity;
-    const Vector3d y_f = stability_.separator.y.head<3>(), y_m = stability_.separator.y.tail<3>();
-    const Vector3d h = g.cross(y_m);
-    const double norm = h.norm(), excess = -y_f.dot(g);
-    if (!(norm > 0) || !(excess < kMaxComShift * norm)) return false;
-    lines_.push_back({h / norm, h.dot(state().com_W) / norm + excess / norm});
+    std::vector<numeric::Contact>& contacts = ws_.guide.contacts;
+    for (const Approach& approach : ws_.approaches) {
+      if (approach.distance <= 0 && !Ignored(approach.body))
+        contacts.push_back(AsContact(approach));
+    }
+    const numeric::StabilityQuery query = numeric::PlacedQuery(world_, ws_.guide);
+    const auto support = NearestSupport(
+        numeric::WrenchGenerators(query, numeric::Pyramid::kInscribed), world_.model().gravity);
+    if (!support || support->shift.norm() > kMaxComShift) return false;
+    if (support->shift.norm() < kSlack) return true;
+    if (lines_.size() >= kLines) lines_.erase(lines_.begin());
+    lines_.push_back(MakeLine(*support));
     return true;
+  }
+
+  SupportLine MakeLine(const Support& support) const {
+    SupportLine line;
+    const double length = support.shift.norm();
+    line.direction = support.shift / length;
+    const auto& contacts = ws_.guide.contacts;
+    double total = 0;
+    auto next = support.loads.begin();
+    for (const numeric::Contact& contact : contacts) {
+      const auto end = next + (contact.friction == 0 ? 1 : world_.model().contact.generators);
+      const double load = std::accumulate(next, end, 0.0);
+      next = end;
+      if (load == 0) continue;
+      const auto& X_WB = state().X_WB[static_cast<std::size_t>(contact.body)];
+      line.points.push_back({contact.body, X_WB.R.transpose() * (contact.x_W - X_WB.p), load});
+      total += load;
+    }
+    for (SupportLine::Point& point : line.points) point.load /= total;
+    line.offset = Crossed(line) + length;
+    return line;
+  }
+
+  // By how much beyond the line.
+  double Crossed(const SupportLine& line) const {
+    Vector3d from = state().com_W;
+    for (const SupportLine::Point& point : line.points) from -= point.load * Place(point);
+    return line.direction.dot(from) - line.offset;
+  }
+
+  Vector3d Place(const SupportLine::Point& point) const {
+    return state().X_WB[static_cast<std::size_t>(point.body)] * point.p_B;
+  }
+
+  numeric::Contact AsContact(const Approach& approach) const {
+    numeric::Contact contact;
+    contact.site = approach.site;
+    contact.body = approach.body;
+    contact.object = approach.object;
+    contact.x_W = approach.x_W;
+    contact.n_W = approach.n_W;
+    contact.friction = world_.model().objects[static_cast<std::size_t>(approach.object)].friction;
+    return contact;
   }
 
   // Lines crossed before must not be crossed back; contacts move little from iterate to iterate.
@@ -166,29 +238,67 @@ class Repairer {
     if (lines_.empty()) return;
     numeric::ComJacobian(world_.tree(), state(), &ws_.com_jacobian);
     for (const SupportLine& line : lines_) {
-      const double crossed = line.direction.dot(state().com_W) - line.offset;
-      TaskBound& bound = NextBound(options_.com_margin - crossed, kInfinity);
+      TaskBound& bound =
+          NextBound(options_.com_margin - Crossed(line), kInfinity, kBalanceCompliance);
       bound.row = ws_.com_jacobian.transpose() * line.direction;
+      for (const SupportLine::Point& point : line.points) {
+        numeric::PointJacobianRow(world_.tree(), state(), point.body, Place(point), line.direction,
+                                  &ws_.row);
+        bound.row -= point.load * ws_.row;
+      }
     }
   }
 
-  void AddContacts() {
+  void FindSites() {
     const int count = wanted_ == 0 ? 0 : wanted_ + static_cast<int>(ws_.guide.contacts.size());
     numeric::FindApproaches(world_, {options_.search_distance, options_.sites_per_body, count},
                             &ws_.guide.geometry, &ws_.approaches);
+    std::erase_if(ws_.approaches, [&](const Approach& a) { return Ignored(a.body); });
+  }
+
+  // Those there are stay within the band. A stable robot that collides may need to leave what it
+  // touches.
+  void AddContacts() {
+    const double epsilon = world_.model().contact.epsilon;
+    for (const Approach& approach : ws_.approaches) {
+      if (approach.distance >= epsilon) break;
+      AddSite(approach, stable_ ? kInfinity : kHighBand * epsilon - approach.distance,
+              kContactCompliance);
+    }
+    if (options_.slide_compliance > 0) AddHolds();
+  }
+
+  // Two sites a body say where it is on a face.
+  void AddHolds() {
+    const double epsilon = world_.model().contact.epsilon;
+    held_.assign(world_.tree().bodies.size(), 0);
+    for (const Approach& approach : ws_.approaches) {
+      if (approach.distance >= epsilon) break;
+      if (++held_[static_cast<std::size_t>(approach.body)] > 2) continue;
+      const Vector3d a = approach.n_W.unitOrthogonal();
+      for (const Vector3d& along : {a, Vector3d(approach.n_W.cross(a))}) {
+        numeric::PointJacobianRow(world_.tree(), state(), approach.body, approach.x_W, along,
+                                  &NextBound(0, 0, options_.slide_compliance).row);
+      }
+    }
+  }
+
+  void AddWanted() {
+    if (stable_) return;
     const double epsilon = world_.model().contact.epsilon;
     int further = 0;
     for (const Approach& approach : ws_.approaches) {
-      if (Ignored(approach.body)) continue;
-      const bool in_band = approach.distance < epsilon;
-      if (!in_band && (stable_ || ++further > wanted_)) break;
-      // A stable robot that collides may need to leave what it touches.
-      const double upper =
-          stable_ ? kInfinity : (in_band ? kHighBand : kAim) * epsilon - approach.distance;
-      TaskBound& bound = NextBound(kLowBand * epsilon - approach.distance, upper);
-      numeric::PointJacobianRow(world_.tree(), state(), approach.body, approach.x_W, approach.n_W,
-                                &bound.row);
+      if (approach.distance < epsilon) continue;
+      if (++further > wanted_) break;
+      AddSite(approach, kAim * epsilon - approach.distance, kWantedCompliance);
     }
+  }
+
+  void AddSite(const Approach& approach, double upper, double compliance) {
+    const double epsilon = world_.model().contact.epsilon;
+    TaskBound& bound = NextBound(kLowBand * epsilon - approach.distance, upper, compliance);
+    numeric::PointJacobianRow(world_.tree(), state(), approach.body, approach.x_W, approach.n_W,
+                              &bound.row);
   }
 
   void AddGoals() {
@@ -197,42 +307,14 @@ class Repairer {
       for (int axis = 0; axis < 3; ++axis) {
         const double rate = (goal.goal_W - p)[axis];
         numeric::PointJacobianRow(world_.tree(), state(), goal.body, p, Vector3d::Unit(axis),
-                                  &NextBound(rate, rate).row);
+                                  &NextBound(rate, rate, kGoalCompliance).row);
       }
     }
   }
 
-  // Bounds that the step so far violates become tasks, in the order of their priority, until none
-  // is added. They are not taken out again: what is asked too much of a step is had back in the
-  // next one.
   VectorXd Solve(const Configuration& q) {
-    ws_.active.assign(count_, 0);
-    VectorXd step = VectorXd::Zero(world_.tree().num_velocities());
-    for (int round = 0; round < kMaxRounds && Activate(step); ++round) {
-      std::size_t size = 0;
-      for (std::size_t i = 0; i < count_; ++i) {
-        if (!ws_.active[i]) continue;
-        if (ws_.tasks.size() <= size) ws_.tasks.emplace_back();
-        ws_.tasks[size].row = ws_.bounds[i].row;
-        ws_.tasks[size++].rate = ws_.active[i] == 1 ? ws_.bounds[i].lower : ws_.bounds[i].upper;
-      }
-      step = numeric::SolveTaskStack(world_.tree(), q, {ws_.tasks.data(), size}, options_.stack,
-                                     &ws_.stack);
-    }
-    return step;
-  }
-
-  bool Activate(const VectorXd& step) {
-    bool changed = false;
-    for (std::size_t i = 0; i < count_; ++i) {
-      if (ws_.active[i]) continue;
-      const TaskBound& bound = ws_.bounds[i];
-      const double rate = bound.row.dot(step);
-      if (rate < bound.lower - kSlack || bound.lower == bound.upper) ws_.active[i] = 1;
-      if (rate > bound.upper + kSlack) ws_.active[i] = 2;
-      changed = changed || ws_.active[i];
-    }
-    return changed;
+    return SolveBoundedStep(world_.tree(), q, {ws_.bounds.data(), count_},
+                            {options_.stack, kRounds}, &ws_.bounded);
   }
 
   const World& world_;
@@ -243,6 +325,7 @@ class Repairer {
   std::vector<SupportLine> lines_;
   std::vector<double> errors_;  // of the goals, since the last iterate outside
   std::size_t count_ = 0;       // bounds in use
+  std::vector<int> held_;       // sites of a body
   int unstable_ = 0;            // iterates that were
   int wanted_ = 0;              // sites to be brought into contact besides those that are
 };

@@ -22,6 +22,8 @@ struct RepairOptions {
   double search_distance = 0.6;  ///< obstacles farther than this from a site make no task (m)
   int sites_per_body = 4;
   numeric::TaskStackOptions stack;
+  /** Compliance (bounded_step.h) of contacts against sliding; 0: they slide as they like. */
+  double slide_compliance = 0;
   std::vector<char> ignored;     ///< per body: whether its contacts do not count; empty: none
   std::vector<PointGoal> goals;  ///< to be met besides, at lowest priority
   double goal_tolerance = 0.01;  ///< m

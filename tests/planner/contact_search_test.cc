@@ -61,28 +61,53 @@ struct Walker {
   PlannerCounters counters;
 };
 
-TEST_CASE("a foot is lifted out of the band, carried and placed") {
+Limb LimbOf(const Room& room, const std::string& body) {
+  const int leaf = FindBody(room.problem.model.robot, body);
+  for (const Limb& limb : FindLimbs(room.world.tree())) {
+    if (limb.bodies.back() == leaf) return limb;
+  }
+  throw std::logic_error("no limb ends with " + body);
+}
+
+TEST_CASE("a foot is lifted out of the band, carried and placed, by steps of all lengths") {
   const Room room("floor");
   Walker walker(room, numeric::MakeSampledOracle(room.world, {kStep}));
-  const auto limbs = FindLimbs(room.world.tree());
   const int foot = FindBody(room.problem.model.robot, "LLEG_JOINT5");
-  const auto leg = std::find_if(limbs.begin(), limbs.end(),
-                                [&](const Limb& limb) { return limb.bodies.back() == foot; });
-  REQUIRE(leg != limbs.end());
-  const Configuration& from = room.problem.start;
-  Configuration target = from;
-  target.X_WB.p += Eigen::Vector3d(0.15, 0, 0);
-  const Chain chain = StepLimb(from, target, *leg, {}, walker.context());
-  REQUIRE(chain.reached);
-  CheckChain(room, from, chain.nodes);
-  double highest = 0;
-  for (const Configuration& q : chain.nodes) {
-    highest = std::max(highest, PlaceOf(room, q, foot).z() - PlaceOf(room, from, foot).z());
-  }
-  CHECK(highest > 0.01);
-  CHECK((PlaceOf(room, chain.nodes.back(), foot) - PlaceOf(room, target, foot)).norm() < 0.03);
   const int other = FindBody(room.problem.model.robot, "RLEG_JOINT5");
-  CHECK((PlaceOf(room, chain.nodes.back(), other) - PlaceOf(room, from, other)).norm() < 0.1);
+  const Configuration& from = room.problem.start;
+  for (const double dx : {-0.2, 0.1, 0.15, 0.3}) {
+    for (const double dy : {0.0, 0.05}) {
+      Configuration target = from;
+      target.X_WB.p += Eigen::Vector3d(dx, dy, 0);
+      const Chain chain = StepLimb(from, target, LimbOf(room, "LLEG_JOINT5"), {}, walker.context());
+      INFO(dx << " " << dy);
+      REQUIRE(chain.reached);
+      CheckChain(room, from, chain.nodes);
+      double highest = 0;
+      for (const Configuration& q : chain.nodes) {
+        highest = std::max(highest, PlaceOf(room, q, foot).z() - PlaceOf(room, from, foot).z());
+      }
+      CHECK(highest > 0.01);
+      const Configuration& last = chain.nodes.back();
+      CHECK((PlaceOf(room, last, foot) - PlaceOf(room, target, foot)).norm() < 0.03);
+      CHECK((PlaceOf(room, last, other) - PlaceOf(room, from, other)).norm() < 0.1);
+    }
+  }
+}
+
+TEST_CASE("a plain step forward is found, both feet placed and the target reached") {
+  const Room room("floor");
+  Walker walker(room, numeric::MakeSampledOracle(room.world, {kStep}));
+  for (const double dx : {0.1, 0.3}) {
+    Configuration target = room.problem.start;
+    target.X_WB.p.x() += dx;
+    const Chain chain =
+        StepTowards(room.problem.start, target, FindLimbs(room.world.tree()), {}, walker.context());
+    INFO(dx);
+    REQUIRE(chain.reached);
+    CHECK(chain.nodes.back() == target);
+    CheckChain(room, room.problem.start, chain.nodes);
+  }
 }
 
 TEST_CASE("steps out of reach cost no edge") {
@@ -120,7 +145,8 @@ TEST_CASE("growth of a seed depends on its arguments alone and every edge of it 
     const auto grow = [&] {
       Walker walker(room, numeric::MakeSampledOracle(room.world, {kStep}));
       numeric::Rng rng = JobRng(1, i);
-      return GrowContacts(forest, forest.trees(), room.problem.sampling, limbs, {},
+      const auto kind = static_cast<GrowthKind>(i % kNumGrowthKinds);
+      return GrowContacts(kind, forest, forest.trees(), room.problem.sampling, limbs, {},
                           walker.context(), rng);
     };
     const ContactGrowth one = grow();
@@ -155,16 +181,44 @@ TEST_CASE("the search gets up from the chair, the same way with any number of th
 }
 
 TEST_CASE("a search whose oracle never says yes ends at its limit with nothing") {
-  const Room room("stairs");
   const EdgeOracle undecided = [](const Edge&) { return Verdict::kUndecided; };
   const ExtensionOptions extension = Repairing();
+  for (const char* name : {"stairs", "floor"}) {
+    for (const double sample_step : {0.0, 0.05}) {
+      const Room room(name);
+      ContactGrowthOptions options;
+      options.sample_step = sample_step;
+      const PlanResult result =
+          PlanContacts(room.world, room.problem.sampling, room.problem.start, room.problem.goal,
+                       undecided, extension, options, Limited(1, 1, 40));
+      CHECK(result.stop == StopReason::kIterationLimit);
+      CHECK(result.iterations == 40);
+      CHECK(result.waypoints.empty());
+      if (sample_step == 0) CHECK(result.counters.edges_accepted == 0);
+    }
+  }
+}
+
+TEST_CASE("edges that only samples accept are mended or cut, and the way is all accepted") {
+  const Room room("chair_and_table");
+  // Refuses what samples do not see: edges longer than this.
+  const EdgeOracle samples = numeric::MakeSampledOracle(room.world, {kStep});
+  long refused = 0;
+  const EdgeOracle strict = [&](const Edge& edge) {
+    if (Distance(edge.from, edge.to) <= 0.2) return samples(edge);
+    ++refused;
+    return Verdict::kFails;
+  };
+  const ExtensionOptions extension = Repairing();
   const PlanResult result =
-      PlanContacts(room.world, room.problem.sampling, room.problem.start, room.problem.goal,
-                   undecided, extension, {}, Limited(1, 1, 40));
-  CHECK(result.stop == StopReason::kIterationLimit);
-  CHECK(result.iterations == 40);
-  CHECK(result.waypoints.empty());
-  CHECK(result.counters.edges_accepted == 0);
+      PlanContacts(room.world, room.problem.sampling, room.problem.start, room.problem.goal, strict,
+                   extension, {}, Limited(1, 1, 5000));
+  REQUIRE(result.stop == StopReason::kSolved);
+  CHECK(refused > 0);
+  CheckChain(room, result.waypoints.front(), result.waypoints);
+  for (std::size_t i = 1; i < result.waypoints.size(); ++i) {
+    CHECK(Distance(result.waypoints[i - 1], result.waypoints[i]) <= 0.2);
+  }
 }
 
 }  // namespace

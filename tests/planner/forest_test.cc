@@ -57,6 +57,58 @@ TEST_CASE("random joins give the components of the graph") {
   }
 }
 
+TEST_CASE("random cuts and joins give the components of the graph") {
+  std::mt19937_64 rng(2);
+  constexpr int kNodes = 25;
+  Forest forest;
+  for (int i = 0; i < kNodes; ++i) forest.Add(At(i), -1);
+  std::vector<std::pair<int, int>> edges;
+  for (int k = 0; k < 300; ++k) {
+    if (rng() % 3 == 0 && !edges.empty()) {
+      const std::size_t gone = rng() % edges.size();
+      forest.Cut(edges[gone].first, edges[gone].second);
+      edges.erase(edges.begin() + static_cast<std::ptrdiff_t>(gone));
+    } else {
+      const int a = static_cast<int>(rng() % kNodes), b = static_cast<int>(rng() % kNodes);
+      const bool apart = forest.tree(a) != forest.tree(b);
+      REQUIRE(forest.Join(a, b) == apart);
+      if (apart) edges.emplace_back(a, b);
+    }
+    std::vector<int> label(kNodes);
+    for (int i = 0; i < kNodes; ++i) label[static_cast<std::size_t>(i)] = i;
+    for (const auto& [a, b] : edges) {
+      const int kept = label[static_cast<std::size_t>(a)],
+                gone = label[static_cast<std::size_t>(b)];
+      for (int& l : label) l = l == gone ? kept : l;
+    }
+    int listed = 0;
+    for (const int t : forest.trees()) {
+      for (const int i : forest.members(t)) REQUIRE(forest.tree(i) == t);
+      listed += static_cast<int>(forest.members(t).size());
+    }
+    REQUIRE(listed == kNodes);
+    for (int i = 0; i < kNodes; ++i) {
+      for (int j = 0; j < i; ++j) {
+        REQUIRE((forest.tree(i) == forest.tree(j)) ==
+                (label[static_cast<std::size_t>(i)] == label[static_cast<std::size_t>(j)]));
+      }
+    }
+  }
+}
+
+TEST_CASE("an edge is proved for both its nodes, and a new edge in its place is not") {
+  Forest forest;
+  const int a = forest.Add(At(0), -1), b = forest.Add(At(1), a), c = forest.Add(At(2), b);
+  forest.MarkProved(a, b);
+  CHECK((forest.Proved(a, b) && forest.Proved(b, a)));
+  CHECK_FALSE(forest.Proved(b, c));
+  CHECK_THROWS(forest.Proved(a, c));
+  forest.Cut(a, b);
+  CHECK(forest.Join(a, b));
+  CHECK_FALSE(forest.Proved(a, b));
+  CHECK(forest.Way(a, c) == std::vector<int>{a, b, c});
+}
+
 TEST_CASE("the nearest node is sought in one tree, or in each of the others") {
   Forest forest;
   const int a = forest.Add(At(0), -1), a1 = forest.Add(At(5), a);

@@ -46,6 +46,23 @@ TEST_CASE("a member of the space is left as it is") {
   CHECK(result.q == room.problem.start);
 }
 
+TEST_CASE("feet sunk into the floor are lifted out of it, not turned in it") {
+  for (const double depth : {0.01, 0.03, 0.05}) {
+    const Room room("floor");
+    ProjectionWorkspace workspace(room.world);
+    numeric::GuideWorkspace judge(room.world);
+    Configuration q = room.problem.start;
+    q.X_WB.p.z() -= depth;
+    REQUIRE(TestConfiguration(room.world, q, Space::kFree, &judge).verdict ==
+            (depth > 0.011 ? Verdict::kFails : Verdict::kHolds));
+    const ProjectionResult result = Repair(room.world, q, {}, &workspace);
+    REQUIRE(result.stop == ProjectionStop::kSolved);
+    CHECK(TestConfiguration(room.world, result.q, Space::kGuide, &judge).verdict ==
+          Verdict::kHolds);
+    CHECK(Distance(q, result.q) < 0.2);  // shins that were in the band stay there
+  }
+}
+
 TEST_CASE("knees in the edge of a table are brought out of it") {
   const Room room("chair_and_table_hard");
   ProjectionWorkspace workspace(room.world);

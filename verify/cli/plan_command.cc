@@ -9,6 +9,7 @@
 #include "cguide/numeric/sampled_edge.h"
 #include "cguide/planner/batch.h"
 #include "cguide/planner/contact_search.h"
+#include "cguide/planner/detour.h"
 #include "cguide/planner/endpoint.h"
 #include "cguide/planner/prm.h"
 #include "cguide/planner/rrt.h"
@@ -19,6 +20,7 @@
 #include "cguide/verify/cli/roadmap_option.h"
 #include "cguide/verify/cli/robust_option.h"
 #include "cguide/verify/cli/version.h"
+#include "cguide/verify/edge_audit.h"
 #include "cguide/verify/sampled_audit.h"
 #include "cguide/verify/whole_audit.h"
 
@@ -32,6 +34,7 @@ using planner::StopReason;
 
 // The stream of random numbers that shortcuts draw from, apart from those of the search.
 constexpr std::uint64_t kShortcutStream = 0x5c0ffee;
+constexpr std::uint64_t kMendStream = 0x3e4d;  // and the detours past what the audit refuses
 
 /** Whether edges are decided whole. The paper's nearest contacts are not continuous: only samples
  of them can be had. */
@@ -58,6 +61,12 @@ EdgeOracle MakeOracle(const PlanArguments& arguments, const World& world, numeri
     return verify::MakeWholeOracle(world, options);
   }
   return numeric::MakeSampledOracle(world, {arguments.edge_step, space});
+}
+
+/** Whether the audit will prove an edge. */
+EdgeOracle MakeAuditOracle(const PlanArguments& arguments, const World& world) {
+  auto auditor = std::make_shared<verify::EdgeAuditor>(world, ParseRobustness(arguments.robust));
+  return [auditor](const Edge& edge) { return verify::VerdictOf(auditor->Audit(0, edge)); };
 }
 
 struct Plan {
@@ -150,6 +159,30 @@ Plan MakePlan(const PlanArguments& arguments, const World& world, const Problem&
   return plan;
 }
 
+// The checker refuses few of the edges that the planner's oracle accepted, where balance has hardly
+// room: they are passed beside. What cannot be is left for the audit to name.
+void MendUnproved(const PlanArguments& arguments, const World& world, Plan* plan) {
+  const EdgeOracle oracle = MakeAuditOracle(arguments, world);
+  const planner::ExtensionOptions extension = MakeExtension(arguments);
+  planner::ProjectionWorkspace workspace(world);
+  const planner::ExtensionContext context{world, oracle, extension, &workspace,
+                                          &plan->result.counters};
+  numeric::Rng rng = planner::JobRng(arguments.seed, kMendStream);
+  std::vector<Configuration>& path = plan->result.waypoints;
+  for (std::size_t end = 1; end < path.size(); ++end) {
+    if (planner::EdgeHolds(path[end - 1], path[end], context)) continue;
+    const auto mending = planner::MendEdge(path, end, {}, context, rng);
+    if (!mending) continue;
+    std::vector<Configuration> mended(
+        path.begin(), path.begin() + static_cast<std::ptrdiff_t>(mending->first) + 1);
+    mended.insert(mended.end(), mending->between.begin(), mending->between.end());
+    end = mended.size();
+    mended.insert(mended.end(), path.begin() + static_cast<std::ptrdiff_t>(mending->last),
+                  path.end());
+    path = std::move(mended);
+  }
+}
+
 std::map<std::string, long> Counters(const PlanResult& result) {
   const planner::PlannerCounters& c = result.counters;
   std::map<std::string, long> counters{{"iterations", result.iterations},
@@ -170,14 +203,19 @@ std::map<std::string, long> Counters(const PlanResult& result) {
 
 /** How the guide's edges were tested; where they were decided whole, the checker has the last word,
  and the proofs go into the certificate. */
-std::string ConcludeEdges(const PlanArguments& arguments, const World& world, const Plan& plan) {
+std::string ConcludeEdges(const PlanArguments& arguments, const World& world, Plan* plan) {
   const Model& model = world.model();
   if (!DecidesWholeEdges(arguments, model)) return DescribeTest(arguments, model);
   if (arguments.space == "free") return "whole, collisions only";
-  const Path path{ColumnNames(model.robot), plan.result.waypoints};
+  Path path{ColumnNames(model.robot), plan->result.waypoints};
   verify::WholeAuditOptions options;
   options.robust = ParseRobustness(arguments.robust);
-  const verify::WholeAudit audit = verify::AuditWhole(world, path, options);
+  verify::WholeAudit audit = verify::AuditWhole(world, path, options);
+  if (audit.verdict != Verdict::kHolds) {
+    MendUnproved(arguments, world, plan);
+    path.waypoints = plan->result.waypoints;
+    audit = verify::AuditWhole(world, path, options);
+  }
   std::vector<const check::EdgeProof*> proofs;
   for (std::size_t i = 0; i < audit.edges.size(); ++i) {
     const verify::EdgeFinding& edge = audit.edges[i];
@@ -288,7 +326,7 @@ int RunPlan(const PlanArguments& arguments) {
   Warn(arguments.common, problem.warnings);
   const World world(problem.model);
   Plan plan = MakePlan(arguments, world, problem);
-  if (plan.result.stop == StopReason::kSolved) plan.edges = ConcludeEdges(arguments, world, plan);
+  if (plan.result.stop == StopReason::kSolved) plan.edges = ConcludeEdges(arguments, world, &plan);
   const int code = Conclude(arguments, problem, plan);
   WriteStats(arguments, world, plan);
   return code;
