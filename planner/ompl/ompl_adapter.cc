@@ -192,8 +192,21 @@ Configuration GuideStateSpace::Read(const ob::State* state) const {
   return q;
 }
 
+// Distance() of the two configurations without making them: searches for neighbours ask for little
+// else.
 double GuideStateSpace::distance(const ob::State* a, const ob::State* b) const {
-  return Distance(Read(a), Read(b));
+  const auto &p = *a->as<ob::CompoundState>(), &q = *b->as<ob::CompoundState>();
+  const auto values = [](const ob::CompoundState& state, unsigned part, Eigen::Index size) {
+    return Eigen::Map<const Eigen::VectorXd>(state.as<Vectors>(part)->values, size);
+  };
+  const auto rotation = [](const ob::CompoundState& state) {
+    const auto* r = state.as<Rotation>(1);
+    return Eigen::Vector4d(r->x, r->y, r->z, r->w).normalized();
+  };
+  const double dot = std::abs(rotation(p).dot(rotation(q)));
+  const Eigen::Index columns = world_.tree().num_columns;
+  return (values(p, 0, 3) - values(q, 0, 3)).norm() + std::acos(std::min(1.0, dot)) +
+         0.3 * (values(p, 2, columns) - values(q, 2, columns)).norm();
 }
 
 // Interpolation is not defined between orientations half a turn apart; no motion joins them.
