@@ -51,6 +51,16 @@ class Source {
   planner::ProjectionWorkspace workspace_;
 };
 
+/** Whether a step of t towards b, once projected, has come nearer to it by a tenth of its length,
+ as our own extensions must. OMPL's RRTConnect steps towards a target without looking at the clock
+ until a step fails or stays where it is: projected steps that go round in circles would never end.
+ */
+bool Progresses(const Configuration& a, const Configuration& b, const Configuration& q, double t) {
+  constexpr double kLeastShare = 0.1;
+  const double whole = Distance(a, b);
+  return whole - Distance(q, b) >= kLeastShare * std::min(t * whole, Distance(a, q));
+}
+
 constexpr int kTries = 200;  // so that planners see their clocks
 
 /** The rules know no neighbourhoods: samples near a state are samples. */
@@ -220,7 +230,10 @@ void GuideStateSpace::interpolate(const ob::State* from, const ob::State* to, do
   if (options_.interpolation == Interpolation::kProjected) {
     const std::lock_guard lock(scratch_->mutex);
     const auto projected = planner::Project(world_, q, options_.projection, &scratch_->workspace);
-    if (projected.stop == planner::ProjectionStop::kSolved) q = projected.q;
+    if (projected.stop == planner::ProjectionStop::kSolved) {
+      if (!Progresses(a, b, projected.q, t)) return copyState(state, from);
+      q = projected.q;
+    }
   }
   Write(q, state);
 }
