@@ -7,6 +7,7 @@
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/planner/contact_search.h"
 #include "cguide/planner/endpoint.h"
+#include "cguide/planner/held_bodies.h"
 #include "cguide/planner/prm.h"
 #include "cguide/planner/rrt.h"
 #include "tests/benchmark/ompl_guide.h"
@@ -34,10 +35,11 @@ planner::PlanResult RunOurs(Searcher searcher, const Room& room, const EdgeOracl
   };
   planner::ExtensionOptions extension;
   extension.step = options.step;
+  if (!options.held.empty()) extension = HoldingExtension(options.held, kHeldTolerance);
   const auto& sampling = room.problem.sampling;
   switch (searcher) {
     case Searcher::kOurContacts:
-      extension.repair.emplace();
+      if (!extension.repair) extension.repair.emplace();
       return planner::PlanContacts(room.world, sampling, room.start, room.goal, oracle, extension,
                                    {}, run);
     case Searcher::kOurPrm: {

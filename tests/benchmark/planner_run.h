@@ -7,6 +7,7 @@
 #include "cguide/exact/core/path.h"
 #include "cguide/numeric/problem.h"
 #include "cguide/numeric/world.h"
+#include "cguide/planner/repair.h"
 #include "tests/benchmark/part_sampler.h"
 
 // One search by one planner, ours or OMPL's, on equal terms: the same samples' rules, predicates,
@@ -33,11 +34,16 @@ struct Room {
   Configuration start, goal;
 };
 
+inline constexpr double kHeldTolerance = 1e-3;  // m
+
 struct SearchOptions {
   std::uint64_t seed = 1;
   double limit_s = 60;  ///< of CPU time
   double step = 0.25;   ///< of an extension
   bool sample_parts = true;
+  /** Ours only: points that stay within kHeldTolerance of their places; the oracle must see to it
+   (HoldOracle). */
+  std::vector<planner::PointGoal> held;
 };
 
 struct SearchOutcome {

@@ -1,8 +1,9 @@
 // Planners against each other, ours and OMPL's, with the same predicates, samples, metric and edge
 // oracle in one run; every path that comes back is audited. Prints a Markdown table.
 //   planners_benchmark [--seeds N] [--first N] [--limit SECONDS] [--edges STEP|proved ...]
-//                      [--planners rrt,contacts,...] PROBLEM ...
-// CPU time of one thread; a seed that is not solved counts with the limit.
+//                      [--planners rrt,contacts,...] [--hold LINK ...] PROBLEM ...
+// --hold: the link stays where it is at the start, within 1 mm at every s of every edge (ours
+// only). CPU time of one thread; a seed that is not solved counts with the limit.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +15,7 @@
 
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/sampled_edge.h"
+#include "cguide/planner/held_bodies.h"
 #include "cguide/verify/edge_audit.h"
 #include "tests/benchmark/ompl_guide.h"
 #include "tests/benchmark/planner_run.h"
@@ -29,6 +31,7 @@ struct Arguments {
   int first = 1;
   double limit = 20;
   std::vector<std::string> edges;
+  std::vector<std::string> hold;
   std::vector<Searcher> searchers;
   std::vector<std::string> problems;
 };
@@ -42,9 +45,22 @@ const std::vector<std::pair<std::string, Searcher>> kSearchers{
     {"ompl-projected", Searcher::kOmplConnectProjected},
     {"ompl-prm", Searcher::kOmplPrm}};
 
-EdgeOracle MakeOracle(const Room& room, const std::string& edges) {
-  if (edges == "proved") return verify::MakeWholeOracle(room.world, {});
-  return numeric::MakeSampledOracle(room.world, {std::atof(edges.c_str())});
+std::vector<planner::PointGoal> Held(const Room& room, const std::vector<std::string>& links) {
+  std::vector<int> bodies;
+  for (const std::string& link : links) {
+    bodies.push_back(FindBody(room.problem.model.robot, link));
+    Require(bodies.back() >= 0, "the robot has no such link");
+  }
+  return planner::HoldBodies(room.world, room.start, bodies);
+}
+
+EdgeOracle MakeOracle(const Room& room, const std::string& edges,
+                      const std::vector<planner::PointGoal>& held) {
+  EdgeOracle oracle = edges == "proved"
+                          ? verify::MakeWholeOracle(room.world, {})
+                          : numeric::MakeSampledOracle(room.world, {std::atof(edges.c_str())});
+  if (held.empty()) return oracle;
+  return planner::HoldOracle(room.world, std::move(oracle), held, kHeldTolerance);
 }
 
 /** What the audit says of the edges of all paths. */
@@ -75,7 +91,8 @@ std::string Parts(const PartCounts& parts) {
 /** One row; returns the median. */
 double RunRow(const Arguments& arguments, const Room& room, const std::string& edges,
               Searcher searcher, double ours) {
-  const EdgeOracle oracle = MakeOracle(room, edges);
+  const auto held = Held(room, arguments.hold);
+  const EdgeOracle oracle = MakeOracle(room, edges, held);
   verify::EdgeAuditor auditor(room.world);
   std::vector<double> seconds, nodes;
   EdgeVerdicts verdicts;
@@ -85,6 +102,7 @@ double RunRow(const Arguments& arguments, const Room& room, const std::string& e
     SearchOptions options;
     options.seed = static_cast<std::uint64_t>(seed);
     options.limit_s = arguments.limit;
+    options.held = held;
     const SearchOutcome outcome = RunSearch(searcher, room, oracle, options);
     const bool ok = !outcome.waypoints.empty();
     solved += ok;
@@ -136,6 +154,8 @@ Arguments Parse(int argc, char** argv) {
       a.limit = std::atof(value().c_str());
     else if (word == "--edges")
       a.edges.push_back(value());
+    else if (word == "--hold")
+      a.hold.push_back(value());
     else if (word == "--planners")
       a.searchers = ParseSearchers(value());
     else
@@ -167,7 +187,7 @@ int main(int argc, char** argv) {
       for (const std::string& edges : arguments.edges) {
         double ours = 0;
         for (const Searcher searcher : arguments.searchers) {
-          if (IsOmpl(searcher) && !version) continue;
+          if (IsOmpl(searcher) && (!version || !arguments.hold.empty())) continue;
           const double median = RunRow(arguments, room, edges, searcher, ours);
           if (ours == 0) ours = median;
         }
