@@ -20,7 +20,8 @@ namespace cguide::ompl_adapter {
 enum class Interpolation {
   kStraight,  ///< the edge of exact/core/path.h
   /** That state moved into C_guide by Algorithm 3, or left where it is if that fails (it is then
-   found invalid): planners that steer by interpolation get projected extensions. */
+   found invalid): planners that steer by interpolation get projected extensions. The state it
+   starts from where that does not lead nearer to the other end. */
   kProjected
 };
 

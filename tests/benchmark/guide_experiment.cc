@@ -119,7 +119,7 @@ std::vector<Planner> Planners(const Arguments& arguments, const numeric::Problem
   const auto ompl = [&, start, goal](double step) {
     return [&, start, goal, step](std::uint64_t seed) {
       return PlanWithOmpl(world, problem.sampling, start, goal, seed,
-                          {step, 0.25, arguments.limit, arguments.samples});
+                          {step, 0.25, arguments.limit, arguments.samples}, nullptr);
     };
   };
   const int ompl_seeds = OmplVersion() ? arguments.ompl_seeds : 0;

@@ -6,7 +6,7 @@ const char* OmplVersion() { return nullptr; }
 
 std::vector<Configuration> PlanWithOmpl(const numeric::World&, const numeric::SamplingRules&,
                                         const Configuration&, const Configuration&, std::uint64_t,
-                                        const OmplOptions&) {
+                                        const OmplOptions&, long*) {
   return {};
 }
 

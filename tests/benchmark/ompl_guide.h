@@ -17,20 +17,26 @@ enum class OmplSamples {
   kProjected  ///< by our Algorithm 3, as in Algorithm 2 of the paper
 };
 
+enum class OmplSearch { kRrtConnect, kPrm };
+
 struct OmplOptions {
-  double step = 0.05;   ///< between the states an edge is tested at (metric of path.h)
-  double range = 0.25;  ///< of RRTConnect: longest edge
-  double time_limit_s = 60;
+  double step = 0.05;        ///< between the states an edge is tested at (metric of path.h)
+  double range = 0.25;       ///< of RRTConnect: longest edge
+  double time_limit_s = 60;  ///< of the process's CPU time
   OmplSamples samples = OmplSamples::kRaw;
+  bool project_extensions = false;  ///< states that it steers to are moved into C_guide
+  EdgeOracle oracle;                ///< decides motions; empty: OMPL's DiscreteMotionValidator
+  OmplSearch search = OmplSearch::kRrtConnect;
 };
 
-/** A guide by OMPL's RRTConnect and DiscreteMotionValidator in position x SO(3) x joints, with our
- metric, sampling rules and validity test (TestConfiguration in C_guide). Waypoints from start to
- goal; empty where none was found in time, or without OMPL. The clock ends a search, so that which
- seeds are solved depends on the machine. */
+/** A guide by one of OMPL's planners in position x SO(3) x joints, with our metric, sampling rules
+ and validity test (TestConfiguration in C_guide). Waypoints from start to goal; empty where none
+ was found in time, or without OMPL. The clock ends a search, so that which seeds are solved depends
+ on the machine. @param nodes if not null, how many the planner made. */
 std::vector<Configuration> PlanWithOmpl(const numeric::World& world,
                                         const numeric::SamplingRules& sampling,
                                         const Configuration& start, const Configuration& goal,
-                                        std::uint64_t seed, const OmplOptions& options);
+                                        std::uint64_t seed, const OmplOptions& options,
+                                        long* nodes);
 
 }  // namespace cguide::benchmark

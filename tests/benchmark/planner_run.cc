@@ -1,0 +1,125 @@
+#include "tests/benchmark/planner_run.h"
+
+#include <time.h>
+
+#include <algorithm>
+
+#include "cguide/numeric/io/problem_reader.h"
+#include "cguide/planner/contact_search.h"
+#include "cguide/planner/endpoint.h"
+#include "cguide/planner/held_bodies.h"
+#include "cguide/planner/prm.h"
+#include "cguide/planner/rrt.h"
+#include "tests/benchmark/ompl_guide.h"
+
+namespace cguide::benchmark_tools {
+namespace {
+
+constexpr double kNoLimit = 1e9;
+
+Configuration Prepared(const numeric::World& world, const Configuration& q, const char* what) {
+  planner::ProjectionWorkspace workspace(world);
+  return planner::PrepareEndpoint(world, q, numeric::Space::kGuide, what, {}, &workspace).q;
+}
+
+planner::PlanResult RunOurs(Searcher searcher, const Room& room, const EdgeOracle& oracle,
+                            const SearchOptions& options) {
+  const double begin = ProcessSeconds();
+  std::atomic<bool> interrupt = false;
+  planner::RunOptions run;
+  run.seed = options.seed;
+  run.time_limit_s = kNoLimit;  // of the wall clock
+  run.interrupt = &interrupt;
+  run.on_progress = [&](const planner::Progress&) {
+    interrupt = ProcessSeconds() - begin > options.limit_s;
+  };
+  planner::ExtensionOptions extension;
+  extension.step = options.step;
+  if (!options.held.empty()) extension = HoldingExtension(options.held, kHeldTolerance);
+  const auto& sampling = room.problem.sampling;
+  switch (searcher) {
+    case Searcher::kOurContacts:
+      if (!extension.repair) extension.repair.emplace();
+      return planner::PlanContacts(room.world, sampling, room.start, room.goal, oracle, extension,
+                                   {}, run);
+    case Searcher::kOurPrm: {
+      planner::Roadmap roadmap;
+      return planner::PlanPrm(room.world, sampling, room.start, room.goal, oracle, extension, {},
+                              run, &roadmap);
+    }
+    default:
+      return planner::PlanRrt(room.world, sampling, room.start, room.goal, oracle, extension, run);
+  }
+}
+
+SearchOutcome RunOmpl(Searcher searcher, const Room& room, const EdgeOracle& oracle,
+                      const SearchOptions& options) {
+  benchmark::OmplOptions ompl;
+  ompl.range = options.step;
+  ompl.time_limit_s = options.limit_s;
+  ompl.oracle = oracle;
+  const bool projects = searcher == Searcher::kOmplConnect || searcher == Searcher::kOmplPrm;
+  ompl.samples = projects ? benchmark::OmplSamples::kProjected : benchmark::OmplSamples::kRaw;
+  ompl.project_extensions = searcher == Searcher::kOmplConnectProjected;
+  ompl.search = searcher == Searcher::kOmplPrm ? benchmark::OmplSearch::kPrm
+                                               : benchmark::OmplSearch::kRrtConnect;
+  SearchOutcome outcome;
+  outcome.waypoints = benchmark::PlanWithOmpl(room.world, room.problem.sampling, room.start,
+                                              room.goal, options.seed, ompl, &outcome.nodes);
+  return outcome;
+}
+
+}  // namespace
+
+const char* ToString(Searcher searcher) {
+  switch (searcher) {
+    case Searcher::kOurRrt:
+      return "ours, rrt";
+    case Searcher::kOurContacts:
+      return "ours, contacts";
+    case Searcher::kOurPrm:
+      return "ours, prm";
+    case Searcher::kOmplConnect:
+      return "OMPL RRTConnect, Algorithm 2's samples";
+    case Searcher::kOmplConnectRaw:
+      return "OMPL RRTConnect, samples as drawn";
+    case Searcher::kOmplConnectProjected:
+      return "OMPL RRTConnect, our projected space";
+    case Searcher::kOmplPrm:
+      return "OMPL PRM, Algorithm 2's samples";
+  }
+  return "";
+}
+
+bool IsOmpl(Searcher searcher) { return searcher >= Searcher::kOmplConnect; }
+
+double ProcessSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+Room::Room(const std::string& file)
+    : problem(numeric::io::ReadProblem(file)),
+      world(problem.model),
+      start(Prepared(world, problem.start, "start")),
+      goal(Prepared(world, problem.goal, "goal")) {}
+
+SearchOutcome RunSearch(Searcher searcher, const Room& room, const EdgeOracle& oracle,
+                        const SearchOptions& options) {
+  SearchOutcome outcome;
+  if (options.sample_parts) StartPartSampler();
+  const double begin = ProcessSeconds();
+  if (IsOmpl(searcher)) {
+    outcome = RunOmpl(searcher, room, oracle, options);
+  } else {
+    planner::PlanResult result = RunOurs(searcher, room, oracle, options);
+    outcome.waypoints = std::move(result.waypoints);
+    outcome.nodes = result.start_nodes + result.goal_nodes;
+  }
+  outcome.seconds = ProcessSeconds() - begin;
+  if (options.sample_parts) outcome.parts = StopPartSampler();
+  return outcome;
+}
+
+}  // namespace cguide::benchmark_tools
