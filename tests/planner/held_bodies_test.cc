@@ -73,7 +73,7 @@ TEST_CASE("The feet stay within a millimetre on every edge of a reach") {
       HoldOracle(room.world, numeric::MakeSampledOracle(room.world, {}), held, kTolerance);
   RunOptions run;
   run.iteration_limit = 20000;
-  for (const std::uint64_t seed : {4u, 6u}) {
+  for (const std::uint64_t seed : {1u, 2u}) {
     run.seed = seed;
     const PlanResult result =
         PlanRrt(room.world, room.problem.sampling, room.problem.start, room.problem.goal, oracle,
