@@ -72,10 +72,10 @@ struct SampledAudit {
   double length = 0;      ///< of the path (metric of path.h)
   StageCounts collision;  ///< pairs that needed their own answer count one by one
   StageCounts stability;
-  Extreme clearance;                  ///< smallest lower bound of a pair's distance (m)
-  Extreme contact_gap;                ///< largest distance of the nearest contact (m)
-  Extreme com_margin;                 ///< smallest com_m (m)
-  Extreme force_margin;               ///< smallest force margin (no unit)
+  Extreme clearance;     ///< smallest lower bound of a pair's distance (m)
+  Extreme contact_gap;   ///< largest distance of the nearest contact (m)
+  Extreme com_margin;    ///< smallest com_m (m)
+  Extreme force_margin;  ///< smallest force margin (no unit)
   /** How often, from one sample to the next, a body came into contact with an object it did not
    touch before, or left it. A contact that may be one counts. */
   long contacts_made = 0;

@@ -70,7 +70,8 @@ TEST_CASE("Boxes hold their pieces") {
         test::OneBodyModel({{{}, Sphere{0.1}}}, {test::OneObject("o", SomePiece(rng), X)}));
     const numeric::ObstaclePiece& piece = world.geometry().pieces[0];
     if (piece.kind != numeric::PieceKind::kConvex) continue;
-    const auto& [lower, upper] = PieceTree(world.geometry()).Box(0);
+    const PieceTree tree(world.geometry());
+    const auto& [lower, upper] = tree.Box(0);
     for (int k = 0; k < 20; ++k) {
       const Vector3d n = RandomPoint(rng, 1).normalized();
       const Vector3d p =
