@@ -21,6 +21,10 @@ std::vector<std::pair<int, double>> WeightsOf(const Convex& s, const Vector3d& y
   point.c = y;
   numeric::GjkResult gjk;
   numeric::Gjk(s, point, s.c - y, INFINITY, &gjk);
+  // A search that ends at once has named no vertices.
+  for (int k = 0; k < gjk.size; ++k) {
+    if (gjk.simplex[k].i < 0 || gjk.simplex[k].i >= s.num_points) return {};
+  }
   Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, 4> A(4, gjk.size);
   for (int k = 0; k < gjk.size; ++k) A.col(k) << s.c + s.R * s.points[gjk.simplex[k].i], 1;
   const Eigen::VectorXd weights =
