@@ -10,42 +10,21 @@
 #include <random>
 #include <vector>
 
-#include "cguide/numeric/io/problem_reader.h"
-#include "cguide/numeric/sampled_edge.h"
-#include "cguide/planner/endpoint.h"
-#include "cguide/planner/rrt.h"
 #include "cguide/verify/certificate_writer.h"
 #include "cguide/verify/check/check.h"
 #include "cguide/verify/edge_collision.h"
 #include "cguide/verify/edge_stability.h"
+#include "tests/benchmark/guide_edges.h"
 #include "tests/benchmark/timing.h"
 
 namespace {
 
 using namespace cguide;  // NOLINT: a program of one file
+using benchmark_tools::GuideEdges;
+using benchmark_tools::Mean;
 using benchmark_tools::MicrosecondsOf;
 using benchmark_tools::Quantile;
 using Eigen::Vector3d;
-
-std::vector<Edge> GuideEdges(const numeric::Problem& problem, int seeds) {
-  const numeric::World world(problem.model);
-  planner::ProjectionWorkspace workspace(world);
-  const auto start = planner::PrepareEndpoint(world, problem.start, numeric::Space::kGuide, "start",
-                                              {}, &workspace);
-  const auto goal =
-      planner::PrepareEndpoint(world, problem.goal, numeric::Space::kGuide, "goal", {}, &workspace);
-  const EdgeOracle oracle = numeric::MakeSampledOracle(world, {.step = 0.005});
-  std::vector<Edge> edges;
-  for (int seed = 1; seed <= seeds; ++seed) {
-    planner::RunOptions run;
-    run.seed = static_cast<std::uint64_t>(seed);
-    run.time_limit_s = 60;
-    const auto result = planner::PlanRrt(world, problem.sampling, start.q, goal.q, oracle, {}, run);
-    const auto& q = result.waypoints;
-    for (std::size_t i = 0; i + 1 < q.size(); ++i) edges.push_back(Edge{q[i], q[i + 1]});
-  }
-  return edges;
-}
 
 /** Box i of `count`: the first half are bricks of the walls, the others stand on shelves and on the
  floor in the annulus before them. Turned by half a radian about z, some a little more. */
@@ -168,33 +147,28 @@ void Report(const numeric::World& world, const std::vector<Edge>& edges, int rep
     Add(proof.root, &sum);
     leaves += found.leaves;
   }
-  const auto mean = [](const std::vector<double>& x) {
-    double total = 0;
-    for (const double v : x) total += v;
-    return total / static_cast<double>(x.size());
-  };
   const double n = static_cast<double>(bytes.size());
   std::printf("%zu pieces, %zu edges proved, %ld refused; %.1f leaves of collision an edge\n",
               world.model().objects.back().pieces.size() + world.model().objects.size() - 1,
               bytes.size(), refused, static_cast<double>(leaves) / n);
   std::printf("  found: collisions %.2f ms, contact and balance %.2f ms; checked in %.2f ms\n",
-              mean(free), mean(balance), mean(checked));
+              Mean(free), Mean(balance), Mean(checked));
   std::printf(
       "  a proof: mean %.1f kB, 95th percentile %.1f kB; obstacles %.1f, self %.1f, balance %.1f\n",
-      mean(bytes), Quantile(bytes, 0.95), sum.apart / n / 1000, sum.self / n / 1000,
+      Mean(bytes), Quantile(bytes, 0.95), sum.apart / n / 1000, sum.self / n / 1000,
       sum.balance / n / 1000);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const numeric::Problem problem = numeric::io::ReadProblem(
-      argc > 1 ? argv[1] : CGUIDE_FIXTURES "/problems/chair_and_table.yaml");
-  const std::vector<Edge> edges = GuideEdges(problem, argc > 2 ? std::atoi(argv[2]) : 3);
+  const benchmark_tools::Room room(argc > 1 ? argv[1]
+                                            : CGUIDE_FIXTURES "/problems/chair_and_table.yaml");
+  const std::vector<Edge> edges = GuideEdges(room, argc > 2 ? std::atoi(argv[2]) : 3);
   const int count = argc > 3 ? std::atoi(argv[3]) : 3600;
-  Model room = problem.model;
-  Report(numeric::World(room), edges, 3);
-  room.objects.push_back({"boxes", 0.6, FreeBoxes(problem.model, edges, count)});
-  Report(numeric::World(room), edges, 1);
+  Report(room.world, edges, 3);
+  Model full = room.problem.model;
+  full.objects.push_back({"boxes", 0.6, FreeBoxes(room.problem.model, edges, count)});
+  Report(numeric::World(full), edges, 1);
   return 0;
 }

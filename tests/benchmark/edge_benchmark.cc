@@ -7,43 +7,21 @@
 #include <cstdlib>
 #include <vector>
 
-#include "cguide/numeric/io/problem_reader.h"
-#include "cguide/numeric/sampled_edge.h"
-#include "cguide/planner/endpoint.h"
-#include "cguide/planner/rrt.h"
 #include "cguide/verify/certificate_writer.h"
 #include "cguide/verify/check/check.h"
 #include "cguide/verify/edge_collision.h"
 #include "cguide/verify/edge_stability.h"
+#include "tests/benchmark/guide_edges.h"
 #include "tests/benchmark/lipschitz_section.h"
 #include "tests/benchmark/timing.h"
 
 namespace {
 
 using namespace cguide;  // NOLINT: a program of one file
+using benchmark_tools::GuideEdges;
 using benchmark_tools::Mean;
 using benchmark_tools::MicrosecondsOf;
 using benchmark_tools::Quantile;
-
-std::vector<Edge> GuideEdges(const numeric::Problem& problem, const numeric::World& world,
-                             int seeds) {
-  planner::ProjectionWorkspace workspace(world);
-  const auto start = planner::PrepareEndpoint(world, problem.start, numeric::Space::kGuide, "start",
-                                              {}, &workspace);
-  const auto goal =
-      planner::PrepareEndpoint(world, problem.goal, numeric::Space::kGuide, "goal", {}, &workspace);
-  const EdgeOracle oracle = numeric::MakeSampledOracle(world, {.step = 0.005});
-  std::vector<Edge> edges;
-  for (int seed = 1; seed <= seeds; ++seed) {
-    planner::RunOptions run;
-    run.seed = static_cast<std::uint64_t>(seed);
-    run.time_limit_s = 30;
-    const auto result = planner::PlanRrt(world, problem.sampling, start.q, goal.q, oracle, {}, run);
-    const auto& q = result.waypoints;
-    for (std::size_t i = 0; i + 1 < q.size(); ++i) edges.push_back(Edge{q[i], q[i + 1]});
-  }
-  return edges;
-}
 
 template <int N>
 void ReportKinematics(const numeric::World& world, const Edge& edge, double plain) {
@@ -156,10 +134,10 @@ void ReportProofs(const numeric::World& world, const std::vector<Edge>& edges) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const numeric::Problem problem = numeric::io::ReadProblem(
-      argc > 1 ? argv[1] : CGUIDE_FIXTURES "/problems/chair_and_table.yaml");
-  const numeric::World world(problem.model);
-  const std::vector<Edge> edges = GuideEdges(problem, world, argc > 2 ? std::atoi(argv[2]) : 10);
+  const benchmark_tools::Room room(argc > 1 ? argv[1]
+                                            : CGUIDE_FIXTURES "/problems/chair_and_table.yaml");
+  const numeric::World& world = room.world;
+  const std::vector<Edge> edges = GuideEdges(room, argc > 2 ? std::atoi(argv[2]) : 10);
   if (edges.empty()) {
     std::puts("no guide was found");
     return 1;
@@ -176,5 +154,5 @@ int main(int argc, char** argv) {
   ReportCollisions(world, edges);
   ReportStability(world, edges);
   ReportProofs(world, edges);
-  return benchmark::ReportLipschitz(problem, edges, 200) == 0 ? 0 : 1;
+  return benchmark::ReportLipschitz(room.problem, edges, 200) == 0 ? 0 : 1;
 }

@@ -16,10 +16,9 @@
 #include <map>
 #include <string>
 
-#include "cguide/numeric/io/problem_reader.h"
-#include "cguide/planner/endpoint.h"
 #include "cguide/planner/ompl/ompl_adapter.h"
 #include "cguide/verify/edge_audit.h"
+#include "tests/benchmark/room.h"
 
 namespace {
 
@@ -122,13 +121,7 @@ void Run(const char* name, const numeric::World& world, const numeric::Problem& 
 int main(int argc, char** argv) {
   const Arguments arguments = Parse(argc, argv);
   ompl::msg::setLogLevel(ompl::msg::LOG_ERROR);
-  const numeric::Problem problem = numeric::io::ReadProblem(arguments.problem);
-  const numeric::World world(problem.model);
-  planner::ProjectionWorkspace workspace(world);
-  const auto start = planner::PrepareEndpoint(world, problem.start, numeric::Space::kGuide, "start",
-                                              {}, &workspace);
-  const auto goal =
-      planner::PrepareEndpoint(world, problem.goal, numeric::Space::kGuide, "goal", {}, &workspace);
+  const benchmark_tools::Room room(arguments.problem);
   std::printf("%s, %d runs, %g s each, edges %s\n", arguments.problem.c_str(), arguments.runs,
               arguments.time, arguments.edges.c_str());
   std::printf("| space | planner | solved | median s | slowest s | edges proved |\n");
@@ -136,7 +129,7 @@ int main(int argc, char** argv) {
   using ompl_adapter::Interpolation;
   using ompl_adapter::Samples;
   const auto run = [&](const char* name, Interpolation interpolation, Samples samples) {
-    Run(name, world, problem, start.q, goal.q, arguments, interpolation, samples);
+    Run(name, room.world, room.problem, room.start, room.goal, arguments, interpolation, samples);
   };
   run("samples_as_drawn", Interpolation::kStraight, Samples::kRaw);
   run("samples_projected", Interpolation::kStraight, Samples::kProjected);

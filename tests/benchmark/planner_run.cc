@@ -17,11 +17,6 @@ namespace {
 
 constexpr double kNoLimit = 1e9;
 
-Configuration Prepared(const numeric::World& world, const Configuration& q, const char* what) {
-  planner::ProjectionWorkspace workspace(world);
-  return planner::PrepareEndpoint(world, q, numeric::Space::kGuide, what, {}, &workspace).q;
-}
-
 planner::PlanResult RunOurs(Searcher searcher, const Room& room, const EdgeOracle& oracle,
                             const SearchOptions& options) {
   const double begin = ProcessSeconds();
@@ -98,12 +93,6 @@ double ProcessSeconds() {
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
-
-Room::Room(const std::string& file)
-    : problem(numeric::io::ReadProblem(file)),
-      world(problem.model),
-      start(Prepared(world, problem.start, "start")),
-      goal(Prepared(world, problem.goal, "goal")) {}
 
 SearchOutcome RunSearch(Searcher searcher, const Room& room, const EdgeOracle& oracle,
                         const SearchOptions& options) {

@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "cguide/exact/core/path.h"
-#include "cguide/numeric/problem.h"
-#include "cguide/numeric/world.h"
 #include "cguide/planner/repair.h"
 #include "tests/benchmark/part_sampler.h"
+#include "tests/benchmark/room.h"
 
 // One search by one planner, ours or OMPL's, on equal terms: the same samples' rules, predicates,
 // metric, length of a step and edge oracle; one thread; CPU time of the process.
@@ -25,14 +24,6 @@ enum class Searcher {
 };
 const char* ToString(Searcher searcher);
 bool IsOmpl(Searcher searcher);
-
-/** A room with both ends in C_guide. */
-struct Room {
-  explicit Room(const std::string& file);
-  numeric::Problem problem;
-  numeric::World world;
-  Configuration start, goal;
-};
 
 inline constexpr double kHeldTolerance = 1e-3;  // m
 

@@ -14,8 +14,8 @@
 #include "cguide/exact/core/error.h"
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/numeric/sampled_edge.h"
-#include "cguide/planner/endpoint.h"
 #include "cguide/planner/rrt.h"
+#include "tests/benchmark/room.h"
 
 namespace {
 
@@ -46,14 +46,9 @@ double Quantile(std::vector<double> values, double p) {
 
 // Runs all seeds; unsolved ones count with the limit in the quantiles.
 void PlanAllSeeds(const Arguments& arguments, const std::string& file) {
-  const numeric::Problem problem = numeric::io::ReadProblem(file);
-  const numeric::World world(problem.model);
-  planner::ProjectionWorkspace workspace(world);
-  const auto start = planner::PrepareEndpoint(world, problem.start, numeric::Space::kGuide, "start",
-                                              {}, &workspace);
-  const auto goal =
-      planner::PrepareEndpoint(world, problem.goal, numeric::Space::kGuide, "goal", {}, &workspace);
-  const EdgeOracle oracle = numeric::MakeSampledOracle(world, {arguments.edge_step});
+  const benchmark_tools::Room room(file);
+  const numeric::Problem& problem = room.problem;
+  const EdgeOracle oracle = numeric::MakeSampledOracle(room.world, {arguments.edge_step});
   std::vector<double> seconds, nodes;
   int solved = 0;
   for (int seed = arguments.first; seed < arguments.first + arguments.seeds; ++seed) {
@@ -61,7 +56,8 @@ void PlanAllSeeds(const Arguments& arguments, const std::string& file) {
     run.seed = static_cast<std::uint64_t>(seed);
     run.threads = arguments.threads;
     run.time_limit_s = arguments.limit;
-    const auto result = planner::PlanRrt(world, problem.sampling, start.q, goal.q, oracle, {}, run);
+    const auto result =
+        planner::PlanRrt(room.world, problem.sampling, room.start, room.goal, oracle, {}, run);
     const bool ok = result.stop == planner::StopReason::kSolved;
     solved += ok;
     seconds.push_back(ok ? result.seconds : arguments.limit);
