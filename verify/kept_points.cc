@@ -17,18 +17,14 @@ using numeric::PieceKind;
 
 /** Weights of a hull's vertices that make the point of it nearest to y. */
 std::vector<std::pair<int, double>> WeightsOf(const Convex& s, const Vector3d& y) {
-  Convex point;
-  point.c = y;
+  const Vector3d y_P = s.R.transpose() * (y - s.c);
+  const numeric::PointSet hull{{s.points, static_cast<std::size_t>(s.num_points)}, s.lanes};
   numeric::GjkResult gjk;
-  numeric::Gjk(s, point, s.c - y, INFINITY, &gjk);
-  // A search that ends at once has named no vertices.
-  for (int k = 0; k < gjk.size; ++k) {
-    if (gjk.simplex[k].i < 0 || gjk.simplex[k].i >= s.num_points) return {};
-  }
+  numeric::Gjk(hull, {{&y_P, 1}, nullptr}, -y_P, INFINITY, &gjk);
   Eigen::Matrix<double, 4, Eigen::Dynamic, 0, 4, 4> A(4, gjk.size);
-  for (int k = 0; k < gjk.size; ++k) A.col(k) << s.c + s.R * s.points[gjk.simplex[k].i], 1;
+  for (int k = 0; k < gjk.size; ++k) A.col(k) << s.points[gjk.simplex[k].i], 1;
   const Eigen::VectorXd weights =
-      A.colPivHouseholderQr().solve(Eigen::Vector4d(y[0], y[1], y[2], 1));
+      A.colPivHouseholderQr().solve(Eigen::Vector4d(y_P[0], y_P[1], y_P[2], 1));
   std::vector<std::pair<int, double>> result;
   for (int k = 0; k < gjk.size; ++k) {
     if (weights[k] > 0) result.emplace_back(gjk.simplex[k].i, weights[k]);

@@ -32,12 +32,10 @@ ompl_adapter::AdapterOptions AdapterFor(std::uint64_t seed, const OmplOptions& o
 }
 
 ob::PlannerPtr MakePlanner(const ob::SpaceInformationPtr& information, const OmplOptions& options) {
-  // The other structures for nearest neighbours draw random pivots.
-  if (options.search == OmplSearch::kPrm) {
-    auto prm = std::make_shared<og::PRM>(information);
-    prm->setNearestNeighbors<ompl::NearestNeighborsLinear>();
-    return prm;
-  }
+  // PRM of OMPL 1.5 gives its distance only to the structure for nearest neighbours that it makes
+  // by itself; another one would throw.
+  if (options.search == OmplSearch::kPrm) return std::make_shared<og::PRM>(information);
+  // The other structures draw random pivots.
   auto search = std::make_shared<og::RRTConnect>(information);
   search->setRange(options.range);
   search->setNearestNeighbors<ompl::NearestNeighborsLinear>();

@@ -163,10 +163,7 @@ Arguments Parse(int argc, char** argv) {
   }
   if (a.edges.empty()) a.edges = {"0.05", "proved"};
   if (a.searchers.empty()) {
-    // OMPL's PRM is run on request: it has ended the program with an exception of its own.
-    for (const auto& entry : kSearchers) {
-      if (entry.second != Searcher::kOmplPrm) a.searchers.push_back(entry.second);
-    }
+    for (const auto& entry : kSearchers) a.searchers.push_back(entry.second);
   }
   if (a.problems.empty()) a.problems.push_back("fixtures/problems/chair_and_table.yaml");
   return a;

@@ -1,7 +1,10 @@
 #include "cguide/verify/edge_audit.h"
 
 #include <catch2/catch.hpp>
+#include <functional>
+#include <random>
 
+#include "cguide/exact/convex_hull.h"
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/verify/certificate_writer.h"
 #include "tests/verify/sliding_foot.h"
@@ -67,6 +70,38 @@ TEST_CASE("A foot on two rails and on the edges of hulls is proved with turning 
   }
   hull.faces = kSlabFaces;
   CHECK(Audit(SlidingFoot(rails(hull, -0.01)), Slide(-0.02, 0.03)).proof);
+}
+
+TEST_CASE("Contact about a pebble is proved by weights of its vertices") {
+  // Its facets and edges are smaller than it may be moved: the closest point stays on none.
+  std::mt19937_64 rng(3);
+  std::vector<Vector3d> points;
+  for (int i = 0; i < 60; ++i) points.push_back(0.01 * test::RandomPoint(rng, 1).normalized());
+  Model model = test::OneBodyModel({{{}, Sphere{0.01}}},
+                                   {test::OneObject("pebble", exact::ConvexHull(points))});
+  model.sites = {{0, {0, 0, 0}, 0.01}};
+  model.require = GuideRequirement::kContact;
+  const World world(model);
+  EdgeAuditor auditor(world, {.pose = 0.008});
+  int near = 0;
+  const std::function<void(const check::Node&)> count = [&](const check::Node& node) {
+    if (node.balance) {
+      const check::ContactEvidence& contact = node.balance->contacts.at(0);
+      near += contact.near && !contact.near->corners.empty();
+    }
+    for (const check::Node& half : node.halves) count(half);
+  };
+  for (int i = 0; i < 20; ++i) {
+    const Vector3d from = test::RandomPoint(rng, 1).normalized();
+    const Vector3d to = (from + 0.3 * test::RandomPoint(rng, 1)).normalized();
+    const EdgeFinding finding =
+        auditor.Audit(0, {test::At({0.045 * from, {}}), test::At({0.045 * to, {}})});
+    CAPTURE(i, finding.stability.s, finding.stability.reason);
+    CHECK(finding.refusal == "");
+    REQUIRE(finding.proof);
+    count(finding.proof->root);
+  }
+  CHECK(near > 5);
 }
 
 TEST_CASE("Contact alone is proved with one site") {
