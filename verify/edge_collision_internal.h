@@ -22,8 +22,8 @@ struct Item {
   bool self = false;
   int node = -1;
   double way = 0;  ///< squared, from the middle of the shape's box to the piece's box
-  Eigen::Vector3d n_W =
-      Eigen::Vector3d::Zero();  ///< the direction that came nearest to a proof; zero: none
+  /** The direction that came nearest to a proof; zero: none. */
+  Eigen::Vector3d n_W = Eigen::Vector3d::Zero();
 };
 
 struct Task {
