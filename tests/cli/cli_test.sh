@@ -121,6 +121,22 @@ section_roadmap() {
   says "cguide-guide/1"
 }
 
+section_hold() {
+  feet=$fixtures/problems/feet_fixed.yaml
+  expect 0 plan "$feet" -o "$work/held.json" --hold RLEG_JOINT5 --hold LLEG_JOINT5 --certificate "$work/held.cert"
+  says "edges: proved"
+  says "within 1 mm"
+  cp "$work/held.json" "$work/first.json"
+  expect 0 plan "$feet" -o "$work/held.json" --hold RLEG_JOINT5 --hold LLEG_JOINT5 --threads 2
+  cmp -s "$work/held.json" "$work/first.json" || fail "another number of threads gave another guide"
+  expect 3 plan "$feet" -o "$work/g.json" --hold LEG
+  says "JOINT"
+  expect 3 plan "$feet" -o "$work/g.json" --hold RARM_JOINT5
+  says "the goal has"
+  expect 2 plan "$feet" -o "$work/g.json" --hold RLEG_JOINT5 --planner contacts
+  [ ! -e "$work/g.json" ] || fail "a refused plan wrote a file"
+}
+
 section_reproducible() {
   expect 0 plan "$a1" -o "$work/one.json" --seed 7 --threads 1
   expect 0 plan "$a1" -o "$work/two.json" --seed 7 --threads 2

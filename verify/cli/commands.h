@@ -46,7 +46,8 @@ struct PlanArguments {
   std::string link = "straight";  ///< straight, flow
   int shortcut_rounds = 120;
   int corner_cuts = 0;
-  std::string stats;    ///< file for times and counters, or empty
+  std::string stats;              ///< file for times and counters, or empty
+  std::vector<std::string> hold;  ///< links that stay where they are
   std::string roadmap;  ///< of prm: file that is read, if it is there, and written; or empty
 };
 

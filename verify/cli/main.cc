@@ -75,7 +75,12 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
   c->add_option("--stats", a->stats, "File for times, counters and the guide's quality (JSON)");
   c->add_option("--roadmap", a->roadmap,
                 "With --planner prm: roadmap to use again, if the file is there, and to write");
+  c->add_option("--hold", a->hold, "Link that stays where it is, within 1 mm; may be repeated");
   c->callback([a] {
+    if (!a->hold.empty() && a->planner == "contacts") {
+      throw CLI::ValidationError("--hold",
+                                 "needs --planner rrt or prm, which move no limb on purpose");
+    }
     if (!a->roadmap.empty() && a->planner != "prm") {
       throw CLI::ValidationError("--roadmap", "needs --planner prm");
     }

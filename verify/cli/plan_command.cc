@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "cguide/exact/core/error.h"
+#include "cguide/numeric/describe.h"
 #include "cguide/numeric/io/guide_io.h"
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/numeric/sampled_edge.h"
@@ -17,6 +18,7 @@
 #include "cguide/verify/certificate_writer.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
+#include "cguide/verify/cli/hold_option.h"
 #include "cguide/verify/cli/roadmap_option.h"
 #include "cguide/verify/cli/robust_option.h"
 #include "cguide/verify/cli/version.h"
@@ -70,6 +72,8 @@ EdgeOracle MakeAuditOracle(const PlanArguments& arguments, const World& world) {
 }
 
 struct Plan {
+  planner::ExtensionOptions extension;
+  std::vector<planner::PointGoal> held;
   planner::Endpoint start;
   planner::Endpoint goal;
   PlanResult result;
@@ -85,6 +89,12 @@ planner::ExtensionOptions MakeExtension(const PlanArguments& arguments) {
   if (arguments.link == "flow") options.link = planner::Link::kFlow;
   options.space = arguments.space == "free" ? numeric::Space::kFree : numeric::Space::kGuide;
   return options;
+}
+
+/** The oracle, which also sees to it that held links stay where they are. */
+EdgeOracle Holding(const Plan& plan, const World& world, EdgeOracle oracle) {
+  if (plan.held.empty()) return oracle;
+  return planner::HoldOracle(world, std::move(oracle), plan.held, kHoldTolerance);
 }
 
 planner::RunOptions MakeRun(const PlanArguments& arguments, ProgressLine* progress) {
@@ -134,16 +144,23 @@ PlanResult Search(const PlanArguments& arguments, const World& world, const Prob
 }
 
 Plan MakePlan(const PlanArguments& arguments, const World& world, const Problem& problem) {
-  const planner::ExtensionOptions extension = MakeExtension(arguments);
   planner::ProjectionWorkspace workspace(world);
   Plan plan;
+  planner::ExtensionOptions& extension = plan.extension;
+  extension = MakeExtension(arguments);
   plan.start =
       planner::PrepareEndpoint(world, problem.start, extension.space, "start", {}, &workspace);
   plan.goal =
       planner::PrepareEndpoint(world, problem.goal, extension.space, "goal", {}, &workspace);
+  plan.held = HeldPoints(world, arguments.hold, plan.start.q, plan.goal.q);
+  if (!plan.held.empty()) {
+    const numeric::Space space = extension.space;
+    extension = planner::HoldingExtension(plan.held, kHoldTolerance);
+    extension.space = space;
+  }
   if (plan.start.projected) Say(arguments.common, "the start was projected into C_guide");
   if (plan.goal.projected) Say(arguments.common, "the goal was projected into C_guide");
-  const EdgeOracle oracle = MakeOracle(arguments, world, extension.space);
+  const EdgeOracle oracle = Holding(plan, world, MakeOracle(arguments, world, extension.space));
   plan.result = Search(arguments, world, problem, plan, oracle, extension);
   if (plan.result.stop != StopReason::kSolved) return plan;
   plan.length_before = planner::Length(plan.result.waypoints);
@@ -162,10 +179,9 @@ Plan MakePlan(const PlanArguments& arguments, const World& world, const Problem&
 // The checker refuses few of the edges that the planner's oracle accepted, where balance has hardly
 // room: they are passed beside. What cannot be is left for the audit to name.
 void MendUnproved(const PlanArguments& arguments, const World& world, Plan* plan) {
-  const EdgeOracle oracle = MakeAuditOracle(arguments, world);
-  const planner::ExtensionOptions extension = MakeExtension(arguments);
+  const EdgeOracle oracle = Holding(*plan, world, MakeAuditOracle(arguments, world));
   planner::ProjectionWorkspace workspace(world);
-  const planner::ExtensionContext context{world, oracle, extension, &workspace,
+  const planner::ExtensionContext context{world, oracle, plan->extension, &workspace,
                                           &plan->result.counters};
   numeric::Rng rng = planner::JobRng(arguments.seed, kMendStream);
   std::vector<Configuration>& path = plan->result.waypoints;
@@ -310,6 +326,11 @@ int Conclude(const PlanArguments& arguments, const Problem& problem, const Plan&
           " iterations, " + std::to_string(result.start_nodes + result.goal_nodes) +
           " nodes), shortcuts " + Short(plan.shortcut_seconds) + " s, length " +
           Short(plan.length_before) + " -> " + Short(planner::Length(result.waypoints)));
+  if (!plan.held.empty()) {
+    Say(arguments.common,
+        "held links are within " + numeric::Millimetres(kHoldTolerance) +
+            " of their places for every s, by a bound that certificates do not carry");
+  }
   Say(arguments.common, "next: cguide view " + arguments.output +
                             " -o page.html   or   cguide audit " + arguments.output);
   return kExitOk;
