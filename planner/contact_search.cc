@@ -26,9 +26,9 @@ class Search {
       : world_(world),
         sampling_(sampling),
         oracle_(oracle),
-        samples_(options.sample_step > 0 ? numeric::MakeSampledOracle(
-                                               world, {options.sample_step, numeric::Space::kGuide})
-                                         : oracle),
+        samples_(options.sample_step > 0
+                     ? numeric::MakeSampledOracle(world, {options.sample_step, extension.space})
+                     : oracle),
         extension_(extension),
         options_(options),
         run_(run),

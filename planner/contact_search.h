@@ -18,7 +18,8 @@ namespace cguide::planner {
  Trees grow by edges that hold at samples, which cost a tenth of a proof. Where start and goal are
  joined the edges of the way are asked of the oracle; those that it does not accept are mended by
  a way past them, else cut, and the search goes on.
- @param extension with `repair` set, in Space::kGuide.
+ @param extension with `repair` set, in Space::kGuide, unless trees grow by GrowthKind::kSample
+ alone.
  @param start,goal in the space already.
  @pre the oracle may be called from `run.threads` threads.
  @post solved: waypoints run from start to goal and the oracle has accepted every edge. */

@@ -3,6 +3,9 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+#include "cguide/exact/core/error.h"
+#include "tests/random_robot.h"
+
 namespace cguide::planner {
 namespace {
 
@@ -117,6 +120,30 @@ TEST_CASE("the nearest node is sought in one tree, or in each of the others") {
   CHECK(forest.NearestPlace({1, 0, 0}, forest.tree(a)) == a);
   CHECK(forest.NearestOfOthers(At(3.9), forest.tree(a), 5) == std::vector<int>{b, c});
   CHECK(forest.NearestOfOthers(At(3.9), -1, 2) == std::vector<int>{b, a1});
+}
+
+TEST_CASE("the nearest node is the one a full scan finds") {
+  std::mt19937_64 rng(1);
+  const Robot robot = test::RandomRobot(rng, 8);
+  Forest forest;
+  for (int i = 0; i < 300; ++i) forest.Add(test::RandomConfiguration(rng, robot), i - 1);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Configuration q = test::RandomConfiguration(rng, robot);
+    int best = 0;
+    for (int i = 1; i < forest.size(); ++i) {
+      if (Distance(forest.node(i), q) < Distance(forest.node(best), q)) best = i;
+    }
+    CHECK(forest.Nearest(q, forest.tree(0)) == best);
+    CHECK(forest.Nearest(forest.node(trial), forest.tree(0)) == trial);
+  }
+}
+
+TEST_CASE("a tree with no nodes has no nearest one") {
+  Forest forest;
+  const int a = forest.Add(At(0), -1), b = forest.Add(At(1), -1);
+  const int gone = forest.tree(b);
+  forest.Join(a, b);
+  CHECK_THROWS_AS(forest.Nearest(At(0), gone), Error);
 }
 
 TEST_CASE("nodes from which growth failed are taken for farther away") {

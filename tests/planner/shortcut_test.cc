@@ -82,7 +82,7 @@ TEST_CASE("shortcuts keep the ends, never lengthen a guide, and the oracle accep
 TEST_CASE("corners that waypoints alone leave are cut") {
   Shortener shortener("chair_and_table");
   double without = 0, with = 0;
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const Waypoints given = shortener.Plan(seed);
     without += Length(shortener.Shorten(given, {120, 0}));
     with += Length(shortener.Shorten(given, {120, 60}));
