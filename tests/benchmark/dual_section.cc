@@ -21,7 +21,7 @@ using numeric::Vector6d;
 using testing::Storage;
 using testing::WrenchSet;
 
-constexpr int kSets = 5;     // a cell
+constexpr int kSets = 25;    // a cell
 constexpr int kPplSets = 2;  // of them, for the slowest
 // Ours: the median of so many calls, floats and certified in turn, so that a change of the
 // machine's speed is both's; Qhull likewise, the other peers are called once.

@@ -10,4 +10,11 @@ std::vector<Configuration> PlanWithOmpl(const numeric::World&, const numeric::Sa
   return {};
 }
 
+std::vector<Configuration> PlanHeldWithOmpl(const numeric::World&, const numeric::SamplingRules&,
+                                            const Configuration&, const Configuration&,
+                                            const std::vector<planner::PointGoal>&, std::uint64_t,
+                                            const OmplOptions&, long*) {
+  return {};
+}
+
 }  // namespace cguide::benchmark

@@ -7,17 +7,18 @@
 #include <ompl/geometric/planners/prm/PRM.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/util/Console.h>
-#include <time.h>
 
 #include <memory>
 
 #include "cguide/planner/ompl/ompl_adapter.h"
+#include "tests/benchmark/timing.h"
 
 namespace cguide::benchmark {
 namespace {
 
 namespace ob = ompl::base;
 namespace og = ompl::geometric;
+using benchmark_tools::ProcessSeconds;
 
 ompl_adapter::AdapterOptions AdapterFor(std::uint64_t seed, const OmplOptions& options) {
   ompl_adapter::AdapterOptions adapter;
@@ -40,12 +41,6 @@ ob::PlannerPtr MakePlanner(const ob::SpaceInformationPtr& information, const Omp
   search->setRange(options.range);
   search->setNearestNeighbors<ompl::NearestNeighborsLinear>();
   return search;
-}
-
-double ProcessSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 }  // namespace

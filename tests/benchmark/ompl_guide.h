@@ -6,6 +6,7 @@
 #include "cguide/exact/core/path.h"
 #include "cguide/numeric/sampling.h"
 #include "cguide/numeric/world.h"
+#include "cguide/planner/repair.h"
 
 namespace cguide::benchmark {
 
@@ -27,6 +28,7 @@ struct OmplOptions {
   bool project_extensions = false;  ///< states that it steers to are moved into C_guide
   EdgeOracle oracle;                ///< decides motions; empty: OMPL's DiscreteMotionValidator
   OmplSearch search = OmplSearch::kRrtConnect;
+  double held_tolerance = 1e-4;  ///< of the equations of held points (m)
 };
 
 /** A guide by one of OMPL's planners in position x SO(3) x joints, with our metric, sampling rules
@@ -38,5 +40,16 @@ std::vector<Configuration> PlanWithOmpl(const numeric::World& world,
                                         const Configuration& start, const Configuration& goal,
                                         std::uint64_t seed, const OmplOptions& options,
                                         long* nodes);
+
+/** Likewise with points that stay where they are, three a body as HoldBodies gives them, by
+ RRTConnect on OMPL's ProjectedStateSpace: position, rotation vector and joints. `options.step` is
+ how far apart the states of its discrete geodesics are; `options.oracle` decides every edge between
+ two of them, and they are the waypoints. */
+std::vector<Configuration> PlanHeldWithOmpl(const numeric::World& world,
+                                            const numeric::SamplingRules& sampling,
+                                            const Configuration& start, const Configuration& goal,
+                                            const std::vector<planner::PointGoal>& held,
+                                            std::uint64_t seed, const OmplOptions& options,
+                                            long* nodes);
 
 }  // namespace cguide::benchmark

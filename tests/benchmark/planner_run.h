@@ -20,10 +20,14 @@ enum class Searcher {
   kOmplConnect,           ///< RRTConnect: samples projected (Algorithm 2), straight edges
   kOmplConnectRaw,        ///< RRTConnect: samples as drawn, straight edges
   kOmplConnectProjected,  ///< RRTConnect: samples as drawn, extensions projected
-  kOmplPrm                ///< PRM: samples projected, straight edges
+  kOmplPrm,               ///< PRM: samples projected, straight edges
+  kOmplHeld               ///< RRTConnect on OMPL's ProjectedStateSpace: held points only
 };
 const char* ToString(Searcher searcher);
 bool IsOmpl(Searcher searcher);
+
+/** Whether it can hold points, or does nothing else. */
+bool Applies(Searcher searcher, bool holds);
 
 inline constexpr double kHeldTolerance = 1e-3;  // m
 
@@ -32,7 +36,7 @@ struct SearchOptions {
   double limit_s = 60;  ///< of CPU time
   double step = 0.25;   ///< of an extension
   bool sample_parts = true;
-  /** Ours only: points that stay within kHeldTolerance of their places; the oracle must see to it
+  /** Points that stay within kHeldTolerance of their places; the oracle must see to it
    (HoldOracle). */
   std::vector<planner::PointGoal> held;
 };
@@ -46,7 +50,5 @@ struct SearchOutcome {
 
 SearchOutcome RunSearch(Searcher searcher, const Room& room, const EdgeOracle& oracle,
                         const SearchOptions& options);
-
-double ProcessSeconds();
 
 }  // namespace cguide::benchmark_tools

@@ -2,8 +2,8 @@
 // oracle in one run; every path that comes back is audited. Prints a Markdown table.
 //   planners_benchmark [--seeds N] [--first N] [--limit SECONDS] [--edges STEP|proved ...]
 //                      [--planners rrt,contacts,...] [--hold LINK ...] PROBLEM ...
-// --hold: the link stays where it is at the start, within 1 mm at every s of every edge (ours
-// only). CPU time of one thread; a seed that is not solved counts with the limit.
+// --hold: the link stays where it is at the start, within 1 mm at every s of every edge. CPU time
+// of one thread; a seed that is not solved counts with the limit.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -43,7 +43,8 @@ const std::vector<std::pair<std::string, Searcher>> kSearchers{
     {"ompl", Searcher::kOmplConnect},
     {"ompl-raw", Searcher::kOmplConnectRaw},
     {"ompl-projected", Searcher::kOmplConnectProjected},
-    {"ompl-prm", Searcher::kOmplPrm}};
+    {"ompl-prm", Searcher::kOmplPrm},
+    {"ompl-held", Searcher::kOmplHeld}};
 
 std::vector<planner::PointGoal> Held(const Room& room, const std::vector<std::string>& links) {
   std::vector<int> bodies;
@@ -187,7 +188,8 @@ int main(int argc, char** argv) {
       for (const std::string& edges : arguments.edges) {
         double ours = 0;
         for (const Searcher searcher : arguments.searchers) {
-          if (IsOmpl(searcher) && (!version || !arguments.hold.empty())) continue;
+          if (IsOmpl(searcher) && !version) continue;
+          if (!Applies(searcher, !arguments.hold.empty())) continue;
           const double median = RunRow(arguments, room, edges, searcher, ours);
           if (ours == 0) ours = median;
         }

@@ -15,6 +15,12 @@ inline double ThreadSeconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+inline double ProcessSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 /** Mean CPU time of one call of `work`, in microseconds, over `repeats` calls. */
 template <typename Work>
 double MicrosecondsOf(int repeats, const Work& work) {
