@@ -26,7 +26,7 @@ inline constexpr int kNumGrowthKinds = 8;
 
 struct ContactGrowthOptions {
   /** Shares of the effort (GrowthEffort), by GrowthKind. */
-  std::array<double, kNumGrowthKinds> shares{0.5, 0.05, 0.05, 0.05, 0.05, 0.1, 0.2, 0};
+  std::array<double, kNumGrowthKinds> shares{0.15, 0.03, 0.05, 0.05, 0.03, 0.2, 0.49, 0};
   int max_seeds = 12;         ///< trees besides those of start and goal; no more are planted
   double seed_growth = 0.25;  ///< share of the other growth that any tree gets, not these two
   int max_walk = 20;          ///< extensions of a translation
