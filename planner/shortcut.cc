@@ -8,6 +8,11 @@ namespace {
 /** Cuts that save a smaller part of what they replace are not worth their waypoints. */
 constexpr double kWorthwhile = 0.02;
 
+constexpr int kRoundsPerWaypoint = 5;
+constexpr int kLeastRounds = 200;
+/** Waypoints between ends that are near: the shorter a stretch the likelier its chord holds. */
+constexpr double kNear = 10;
+
 using Waypoints = std::vector<Configuration>;
 
 // A replacement for the way from one configuration to another (both kept), or nothing.
@@ -35,7 +40,10 @@ void ShortenBetweenWaypoints(const ExtensionContext& context, numeric::Rng& rng,
         waypoints->size() - 1,
         static_cast<std::size_t>(numeric::Uniform(rng) * static_cast<double>(waypoints->size())));
   };
-  const std::size_t a = pick(), b = pick(), i = std::min(a, b), j = std::max(a, b);
+  const std::size_t a = pick(), any = pick();
+  const auto next = a + 2 + static_cast<std::size_t>(kNear * numeric::Uniform(rng));
+  const std::size_t b = numeric::Uniform(rng) < 0.5 ? any : std::min(next, waypoints->size() - 1);
+  const std::size_t i = std::min(a, b), j = std::max(a, b);
   if (j - i < 2) return;
   const Waypoints old(waypoints->begin() + static_cast<std::ptrdiff_t>(i),
                       waypoints->begin() + static_cast<std::ptrdiff_t>(j) + 1);
@@ -102,7 +110,9 @@ void LeaveOutWaypoints(const ExtensionContext& context, Waypoints* waypoints) {
 std::vector<Configuration> Shortcut(std::vector<Configuration> waypoints,
                                     const ShortcutOptions& options, const ExtensionContext& context,
                                     numeric::Rng& rng) {
-  for (int round = 0; round < options.rounds && waypoints.size() > 2; ++round) {
+  const int rounds = options.rounds.value_or(
+      std::max(kLeastRounds, kRoundsPerWaypoint * static_cast<int>(waypoints.size())));
+  for (int round = 0; round < rounds && waypoints.size() > 2; ++round) {
     ShortenBetweenWaypoints(context, rng, &waypoints);
   }
   for (int cut = 0; cut < options.cuts && waypoints.size() > 2; ++cut) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace cguide::cli {
@@ -44,7 +45,7 @@ struct PlanArguments {
   double edge_step = 0.005;
   double extension = 0;           ///< 0: the planner's default
   std::string link = "straight";  ///< straight, flow
-  int shortcut_rounds = 120;
+  std::optional<int> shortcut_rounds;
   int corner_cuts = 0;
   std::string stats;              ///< file for times and counters, or empty
   std::vector<std::string> hold;  ///< links that stay where they are

@@ -65,9 +65,9 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
                 "straight: projected steps; flow: along the contacts that bear force")
       ->check(CLI::IsMember({"straight", "flow"}))
       ->capture_default_str();
-  c->add_option("--shortcuts", a->shortcut_rounds, "Rounds of shortcutting")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
+  c->add_option("--shortcuts", a->shortcut_rounds,
+                "Rounds of shortcutting; by default five a waypoint, at least 200")
+      ->check(CLI::Range(0, 100000));
   c->add_option("--cuts", a->corner_cuts,
                 "Then so many corners are tried to be cut: shorter, with less room beside them")
       ->check(CLI::Range(0, 100000))
