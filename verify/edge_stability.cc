@@ -333,8 +333,9 @@ bool Decider::Carries(const std::vector<ProposedForce>& forces, const Vector6d& 
   CorrectWeights(R, v, places, &balance);
   if (!ProveBalance(R, v, balance)) return false;
   for (int j = 0; j < balance.size; ++j) {
-    noted->push_back(
-        {forces[j].contact, forces[j].u_W, balance.weight[j].c[0], balance.weight[j].c[1]});
+    const double w0 = balance.weight[j].c[0], w1 = balance.weight[j].c[1];
+    // What was rounded to nothing bears nothing; the checker's bound on it would be below zero.
+    if (w0 != 0 || w1 != 0) noted->push_back({forces[j].contact, forces[j].u_W, w0, w1});
   }
   return true;
 }

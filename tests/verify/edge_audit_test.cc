@@ -5,6 +5,7 @@
 #include <random>
 
 #include "cguide/exact/convex_hull.h"
+#include "cguide/numeric/io/guide_io.h"
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/verify/certificate_writer.h"
 #include "tests/verify/sliding_foot.h"
@@ -52,6 +53,17 @@ TEST_CASE("A foot is proved on whatever the ground is made of, and refuted where
     CHECK(VerdictOf(beyond) == Verdict::kFails);
     CHECK(!beyond.proof);
   }
+}
+
+TEST_CASE(
+    "Forces whose weights are rounded to nothing are left out, which the checker would refuse") {
+  const std::string fixtures = CGUIDE_FIXTURES;
+  const numeric::Problem problem = numeric::io::ReadProblem(fixtures + "/problems/stairs.yaml");
+  const Path path =
+      numeric::io::ReadPathCsv(fixtures + "/paths/stairs_edge.csv", problem.model.robot);
+  const EdgeFinding finding = Audit(problem.model, check::EdgesOf(path).at(0));
+  CHECK(finding.refusal == "");
+  CHECK(finding.proof);
 }
 
 TEST_CASE("A foot on two rails and on the edges of hulls is proved with turning normals") {
