@@ -60,10 +60,7 @@ void AppendBody(const World& world, const BodySites& body, double reach, int per
   std::vector<int>& near = workspace->scratch->near;
   const Transform& X_WB = workspace->state.X_WB[body.body];
   const Vector3d c = X_WB * body.ball.c_B;
-  near.clear();
-  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
-    if (!BallApart(c, body.ball.radius + reach, g.pieces[p])) near.push_back(p);
-  }
+  g.NearPieces(c, body.ball.radius + reach, &near);
   if (near.empty()) return;
   const std::size_t first = approaches->size();
   for (const BodySite& site : body.sites) {

@@ -32,27 +32,21 @@ Verdict Worse(Verdict a, Verdict b) {
   return a == Verdict::kHolds ? b : a;
 }
 
-Verdict DecideBodyObject(const Geometry& g, int body, int object, Workspace::Scratch* scratch) {
+Verdict DecideBodyPiece(const Geometry& g, int body, int p, Workspace::Scratch* scratch) {
   Verdict verdict = Verdict::kHolds;
-  const double skin = g.PairSkin(body, object);
+  const ObstaclePiece& piece = g.pieces[p];
+  const double skin = g.PairSkin(body, piece.object);
   const int num_pieces = static_cast<int>(g.pieces.size());
   const bool single = g.body_begin[body + 1] - g.body_begin[body] == 1;
-  for (int p = g.object_begin[object]; p < g.object_begin[object + 1]; ++p) {
-    const ObstaclePiece& piece = g.pieces[p];
-    if (BallApart(scratch->centers[body], scratch->radii[body], piece)) {
+  for (int s = g.body_begin[body]; s < g.body_begin[body + 1]; ++s) {
+    const Convex& shape = scratch->shapes[s];
+    if (!single && BallApart(shape.c, shape.reach + shape.error, piece)) {
       ++scratch->counts.spheres;
       continue;
     }
-    for (int s = g.body_begin[body]; s < g.body_begin[body + 1]; ++s) {
-      const Convex& shape = scratch->shapes[s];
-      if (!single && BallApart(shape.c, shape.reach + shape.error, piece)) {
-        ++scratch->counts.spheres;
-        continue;
-      }
-      verdict = Worse(verdict, DecidePiece(shape, piece, skin, &scratch->hints[s * num_pieces + p],
-                                           &scratch->counts));
-      if (verdict == Verdict::kFails) return verdict;
-    }
+    verdict = Worse(verdict, DecidePiece(shape, piece, skin, &scratch->hints[s * num_pieces + p],
+                                         &scratch->counts));
+    if (verdict == Verdict::kFails) return verdict;
   }
   return verdict;
 }
@@ -112,10 +106,11 @@ FreeAnswer TestFree(const World& world, Workspace* workspace) {
   FreeAnswer answer;
   for (int body = 0; body < g.num_bodies; ++body) {
     if (scratch->radii[body] < 0) continue;
-    for (int object = 0; object < g.num_objects; ++object) {
-      if (Note(DecideBodyObject(g, body, object, scratch), {body, object, false}, &answer)) {
-        return answer;
-      }
+    g.NearPieces(scratch->centers[body], scratch->radii[body], &scratch->near);
+    scratch->counts.spheres += static_cast<long>(g.pieces.size() - scratch->near.size());
+    for (const int p : scratch->near) {
+      const Pair pair{body, g.pieces[p].object, false};
+      if (Note(DecideBodyPiece(g, body, p, scratch), pair, &answer)) return answer;
     }
   }
   for (int i = 0; i < static_cast<int>(g.self_pairs.size()); ++i) {

@@ -224,10 +224,7 @@ void FindContacts(const World& world, Workspace* workspace, std::vector<Contact>
     const double radius =
         body.ball.radius + reach +
         PlacementError(error_R, error_p, body.ball.c_B.norm() + body.ball.radius, c.lpNorm<1>());
-    scratch.near.clear();
-    for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
-      if (!BallApart(c, radius, g.pieces[p])) scratch.near.push_back(p);
-    }
+    g.NearPieces(c, radius, &scratch.near);
     if (scratch.near.empty()) continue;
     PlacedSite placed;
     placed.body = body.body;

@@ -282,6 +282,7 @@ Geometry::Geometry(const Model& model) {
   const std::vector<ExactPose> X_BL = LinkPoses(model.robot);
   AddShapes(model.robot, X_BL, this);
   AddPieces(model, this);
+  piece_tree = PieceTree(pieces);
   AddSelfPairs(model, this);
   AddSites(model, X_BL, this);
   skin = model.contact.skin;
@@ -289,6 +290,21 @@ Geometry::Geometry(const Model& model) {
   for (const auto& [body, object] : model.contact.may_touch) {
     may_touch[body * num_objects + object] = 1;
   }
+}
+
+// The tree's boxes are wider than what the ball tells apart, its leaves are told apart by the ball.
+// Where there are few pieces a look at each is faster.
+void Geometry::NearPieces(const Vector3d& center, double radius, std::vector<int>* near) const {
+  constexpr std::size_t kFew = 24;
+  near->clear();
+  if (pieces.size() <= kFew) {
+    for (int p = 0; p < static_cast<int>(pieces.size()); ++p) {
+      if (!BallApart(center, radius, pieces[p])) near->push_back(p);
+    }
+    return;
+  }
+  piece_tree.Near(center, center, radius, near);
+  std::erase_if(*near, [&](int p) { return BallApart(center, radius, pieces[p]); });
 }
 
 }  // namespace cguide::numeric

@@ -15,7 +15,7 @@ using numeric::World;
 
 namespace {
 
-std::vector<Item> AllItems(const Geometry& g, const PieceTree& tree) {
+std::vector<Item> AllItems(const Geometry& g, const numeric::PieceTree& tree) {
   std::vector<Item> items;
   for (int s = 0; s < static_cast<int>(g.shapes.size()); ++s) {
     if (!tree.nodes().empty()) items.push_back({s, -1, false, 0});
@@ -33,8 +33,7 @@ std::vector<Item> AllItems(const Geometry& g, const PieceTree& tree) {
 
 EdgeWorkspace::Scratch::Scratch(const World& world)
     : point(world),
-      tree(world.geometry()),
-      all(AllItems(world.geometry(), tree)),
+      all(AllItems(world.geometry(), world.geometry().piece_tree)),
       numbers(CertificateShapes(world)) {}
 
 EdgeWorkspace::EdgeWorkspace(const World& world) : scratch(std::make_unique<Scratch>(world)) {}
@@ -106,10 +105,11 @@ void CollisionDecider::Expand(const Item& item) {
     x_.items.push_back(item);
     return;
   }
-  const PieceTree::Node& node = x_.tree.nodes()[item.node];
-  const PieceTree::Corners box = BoxOf(Shape(item.shape));
-  const auto meets = [&](const PieceTree::Corners& other) {
-    return !BoxesApart(box, options_.pose > 0 ? Widened(other, options_.pose) : other);
+  const numeric::PieceTree::Node& node = g_.piece_tree.nodes()[item.node];
+  const numeric::PieceTree::Corners box = BoxOf(Shape(item.shape));
+  const auto meets = [&](const numeric::PieceTree::Corners& other) {
+    return !numeric::BoxesApart(box,
+                                options_.pose > 0 ? numeric::Widened(other, options_.pose) : other);
   };
   if (!meets(node.box)) return;
   if (node.count == 0) {
@@ -118,8 +118,8 @@ void CollisionDecider::Expand(const Item& item) {
   }
   const Vector3d middle = 0.5 * (box.first + box.second);
   for (int i = node.first; i < node.first + node.count; ++i) {
-    const int piece = x_.tree.order()[i];
-    const PieceTree::Corners& other = x_.tree.Box(piece);
+    const int piece = g_.piece_tree.order()[i];
+    const numeric::PieceTree::Corners& other = g_.piece_tree.Box(piece);
     if (!meets(other)) continue;
     const Vector3d near = middle.cwiseMax(other.first).cwiseMin(other.second);
     x_.items.push_back({item.shape, piece, false, -1, (middle - near).squaredNorm()});
@@ -164,7 +164,7 @@ void CollisionDecider::NoteSides() {
     const Vector3d margin = Vector3d::Constant(1e-6);  // generous: a ray too many does no harm
     for (int s = 0; s < static_cast<int>(g_.shapes.size()); ++s) {
       const MovingShape shape = Move(g_.shapes[s], x_.state.X_WB[g_.shapes[s].body]);
-      if (BoxesApart(BoxOf(shape), {node.lower - margin, node.upper + margin})) continue;
+      if (numeric::BoxesApart(BoxOf(shape), {node.lower - margin, node.upper + margin})) continue;
       for (const check::OutsideRay& ray : OutsideRays(x_.numbers[s], p)) {
         options_.evidence->outside.push_back(ray);
       }

@@ -6,7 +6,6 @@
 #include "cguide/numeric/collision_internal.h"
 #include "cguide/verify/edge_collision.h"
 #include "cguide/verify/moving_shape_internal.h"
-#include "cguide/verify/piece_tree_internal.h"
 
 // Freedom from collisions over an edge: which leaves are looked at, where it is refuted
 // (edge_collision.cc), and the proof over one leaf (leaf_separation.cc).
@@ -40,7 +39,9 @@ struct SharedPlane {
   int refused = -1;  ///< the last shape that is not above it
 };
 
-inline PieceTree::Corners BoxOf(const MovingShape& shape) { return {shape.lower, shape.upper}; }
+inline numeric::PieceTree::Corners BoxOf(const MovingShape& shape) {
+  return {shape.lower, shape.upper};
+}
 
 }  // namespace collision_internal
 
@@ -52,7 +53,6 @@ struct EdgeWorkspace::Scratch {
   std::vector<numeric::Convex> middles;  ///< of them
   std::vector<long> stamp;               ///< leaf for which a shape was moved last
   std::deque<collision_internal::Task> tasks;
-  PieceTree tree;
   std::vector<collision_internal::Item> all;
   std::vector<collision_internal::Item> items;          ///< of the leaf at hand, one for each piece
   std::vector<collision_internal::SharedPlane> shared;  ///< of the leaf at hand
@@ -87,7 +87,7 @@ class CollisionDecider {
   template <typename Test>
   bool TestShortFirst(const Eigen::Vector3d& n, double skin, const Test& test) const;
   bool IsServed(const MovingShape& a, const Item& item, const numeric::Convex& piece);
-  PieceTree::Corners PieceBox(int piece) const;
+  numeric::PieceTree::Corners PieceBox(int piece) const;
   void Expand(const Item& item);
   std::vector<Item> OpenItems(const std::vector<Item>& items);
   void NoteShared();

@@ -127,7 +127,9 @@ bool FartherThan(const ObstaclePiece& piece, const Vector3d& lower, const Vector
 }
 
 ContactKeeper::ContactKeeper(const numeric::World& world)
-    : world_(world), tree_(world.geometry()), exact_(exact::PrepareModel(world.model())) {
+    : world_(world),
+      tree_(world.geometry().piece_tree),
+      exact_(exact::PrepareModel(world.model())) {
   const Geometry& g = world.geometry();
   for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
     const int object = g.pieces[p].object;

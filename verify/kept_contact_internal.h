@@ -10,7 +10,6 @@
 #include "cguide/numeric/world.h"
 #include "cguide/verify/check/certificate.h"
 #include "cguide/verify/moving_shape_internal.h"
-#include "cguide/verify/piece_tree_internal.h"
 
 namespace cguide::verify {
 
@@ -169,7 +168,7 @@ class ContactKeeper {
   void NoteAway(int piece, const Eigen::Vector3d& y, double radius, KeptContact* kept) const;
 
   const numeric::World& world_;
-  PieceTree tree_;
+  const numeric::PieceTree& tree_;
   exact::PreparedModel exact_;
   /** How far each object may be from its place, and so two from each other twice as far; for which
    `behind_` holds. */

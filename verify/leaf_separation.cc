@@ -95,7 +95,7 @@ bool CollisionDecider::IsServed(const MovingShape& a, const Item& item, const Co
   for (SharedPlane& shared : x_.shared) {
     if (shared.refused == item.shape) continue;
     const check::Plane& plane = shared.plane;
-    if (!(HighestStatic(piece, plane.n) <= plane.m0)) continue;
+    if (!(numeric::HighestStatic(piece, plane.n) <= plane.m0)) continue;
     if (shared.shapes.back() != item.shape) {
       ++result_.tests;
       if (!(LowestOver(a, {plane.n, plane.m0, 0}) > kRoom + options_.pose * (1 + 16 * kUnit))) {
@@ -138,8 +138,9 @@ bool CollisionDecider::TestShortFirst(const Vector3d& n, double skin, const Test
 bool CollisionDecider::HoldsStatic(const MovingShape& a, const Convex& middle, const Convex& b,
                                    double skin, Item* item) {
   return AnyDirection(middle, b, item, [&](const Vector3d& way) {
-    return TestShortFirst(
-        way, skin, [&](const Vector3d& n) { return Above(a, HighestStatic(b, n), skin, n); });
+    return TestShortFirst(way, skin, [&](const Vector3d& n) {
+      return Above(a, numeric::HighestStatic(b, n), skin, n);
+    });
   });
 }
 
@@ -171,7 +172,7 @@ bool CollisionDecider::HoldsMesh(const MovingShape& a, const Convex& middle,
   while (!open.empty()) {
     const numeric::MeshNode& node = mesh.nodes[open.back()];
     open.pop_back();
-    if (BoxesApart(BoxOf(a), {node.lower - margin, node.upper + margin})) continue;
+    if (numeric::BoxesApart(BoxOf(a), {node.lower - margin, node.upper + margin})) continue;
     if (node.count == 0) {
       open.push_back(node.first);
       open.push_back(node.first + 1);
@@ -180,9 +181,10 @@ bool CollisionDecider::HoldsMesh(const MovingShape& a, const Convex& middle,
     for (int i = 0; i < node.count; ++i) {
       std::array<Vector3d, 3> corners;
       const Convex triangle = numeric::TriangleConvex(mesh, mesh.order[node.first + i], &corners);
-      const bool behind = std::any_of(
-          planes_.begin(), planes_.end(),
-          [&](const check::Plane& plane) { return HighestStatic(triangle, plane.n) <= plane.m0; });
+      const bool behind =
+          std::any_of(planes_.begin(), planes_.end(), [&](const check::Plane& plane) {
+            return numeric::HighestStatic(triangle, plane.n) <= plane.m0;
+          });
       if (behind) continue;
       Item none;
       const Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
@@ -201,7 +203,7 @@ bool CollisionDecider::Holds(Item* item) {
   const MovingShape& a = Shape(item->shape);
   if (item->self) {
     const MovingShape& b = Shape(item->other);
-    return BoxesApart(BoxOf(a), BoxOf(b)) || HoldsMoving(a, b, item);
+    return numeric::BoxesApart(BoxOf(a), BoxOf(b)) || HoldsMoving(a, b, item);
   }
   const ObstaclePiece& piece = g_.pieces[item->other];
   const double skin = Skin(*item);
@@ -215,7 +217,7 @@ bool CollisionDecider::Holds(Item* item) {
     case PieceKind::kConvex:
       break;
   }
-  return BoxesApart(BoxOf(a), PieceBox(item->other)) || IsServed(a, *item, piece.convex) ||
+  return numeric::BoxesApart(BoxOf(a), PieceBox(item->other)) || IsServed(a, *item, piece.convex) ||
          HoldsStatic(a, x_.middles[item->shape], piece.convex, skin, item);
 }
 
@@ -253,9 +255,9 @@ void CollisionDecider::NoteShared() {
   }
 }
 
-PieceTree::Corners CollisionDecider::PieceBox(int piece) const {
-  const PieceTree::Corners& box = x_.tree.Box(piece);
-  return options_.pose > 0 ? Widened(box, options_.pose) : box;
+numeric::PieceTree::Corners CollisionDecider::PieceBox(int piece) const {
+  const numeric::PieceTree::Corners& box = g_.piece_tree.Box(piece);
+  return options_.pose > 0 ? numeric::Widened(box, options_.pose) : box;
 }
 
 }  // namespace cguide::verify::collision_internal

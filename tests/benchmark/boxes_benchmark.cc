@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+#include "cguide/numeric/membership.h"
+#include "cguide/numeric/near_pairs.h"
 #include "cguide/verify/certificate_writer.h"
 #include "cguide/verify/check/check.h"
 #include "cguide/verify/edge_collision.h"
@@ -159,6 +161,22 @@ void Report(const numeric::World& world, const std::vector<Edge>& edges, int rep
       sum.balance / n / 1000);
 }
 
+/** What a planner asks of every configuration. */
+void ReportMembership(const numeric::World& world, const std::vector<Edge>& edges) {
+  numeric::GuideWorkspace workspace(world);
+  std::vector<numeric::NearPair> near;
+  std::vector<double> test, pairs;
+  for (const Edge& edge : edges) {
+    const Configuration q = Interpolate(edge, 0.5);
+    test.push_back(MicrosecondsOf(
+        10, [&] { TestConfiguration(world, q, numeric::Space::kGuide, &workspace); }));
+    pairs.push_back(MicrosecondsOf(
+        10, [&] { numeric::FindNearPairs(world, 0.03, &workspace.geometry, &near); }));
+  }
+  std::printf("  a configuration: tested in %.0f us, pairs within 30 mm found in %.0f us\n",
+              Mean(test), Mean(pairs));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -167,8 +185,11 @@ int main(int argc, char** argv) {
   const std::vector<Edge> edges = GuideEdges(room, argc > 2 ? std::atoi(argv[2]) : 3);
   const int count = argc > 3 ? std::atoi(argv[3]) : 3600;
   Report(room.world, edges, 3);
+  ReportMembership(room.world, edges);
   Model full = room.problem.model;
   full.objects.push_back({"boxes", 0.6, FreeBoxes(room.problem.model, edges, count)});
-  Report(numeric::World(full), edges, 1);
+  const numeric::World world(full);
+  Report(world, edges, 1);
+  ReportMembership(world, edges);
   return 0;
 }

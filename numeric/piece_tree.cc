@@ -1,20 +1,19 @@
 #include <algorithm>
+#include <array>
 
-#include "cguide/verify/piece_tree_internal.h"
+#include "cguide/numeric/piece_tree_internal.h"
 
-namespace cguide::verify {
+namespace cguide::numeric {
 namespace {
 
 using Eigen::Vector3d;
-using numeric::ObstaclePiece;
-using numeric::PieceKind;
 
 constexpr int kLeaf = 4;
 
 PieceTree::Corners BoxOf(const ObstaclePiece& piece) {
   PieceTree::Corners box;
   if (piece.kind == PieceKind::kMesh) {
-    const numeric::MeshNode& root = piece.mesh->nodes[0];
+    const MeshNode& root = piece.mesh->nodes[0];
     return Widened({root.lower, root.upper}, piece.mesh->error);
   }
   for (int i = 0; i < 3; ++i) {
@@ -26,9 +25,9 @@ PieceTree::Corners BoxOf(const ObstaclePiece& piece) {
 
 }  // namespace
 
-PieceTree::PieceTree(const numeric::Geometry& g) : boxes_(g.pieces.size()) {
-  for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
-    const ObstaclePiece& piece = g.pieces[p];
+PieceTree::PieceTree(const std::vector<ObstaclePiece>& pieces) : boxes_(pieces.size()) {
+  for (int p = 0; p < static_cast<int>(pieces.size()); ++p) {
+    const ObstaclePiece& piece = pieces[p];
     if (piece.kind == PieceKind::kHalfspace) halfspaces_.push_back(p);
     if (piece.kind == PieceKind::kHalfspace) continue;
     if (piece.kind == PieceKind::kMesh && piece.mesh->nodes.empty()) continue;
@@ -68,23 +67,31 @@ void PieceTree::Build(int node, int begin, int end) {
 }
 
 std::vector<int> PieceTree::Near(const Vector3d& lower, const Vector3d& upper, double reach) const {
-  const Corners asked = Widened({lower, upper}, reach);
-  std::vector<int> near = halfspaces_, open;
-  if (!nodes_.empty()) open.push_back(0);
-  while (!open.empty()) {
-    const Node& node = nodes_[open.back()];
-    open.pop_back();
-    if (BoxesApart(asked, node.box)) continue;
-    if (node.count == 0) {
-      open.push_back(node.first);
-      open.push_back(node.first + 1);
-    }
-    for (int i = node.first; i < node.first + node.count; ++i) {
-      if (!BoxesApart(asked, boxes_[order_[i]])) near.push_back(order_[i]);
-    }
-  }
-  std::sort(near.begin(), near.end());
+  std::vector<int> near;
+  Near(lower, upper, reach, &near);
   return near;
 }
 
-}  // namespace cguide::verify
+// Halved at medians the tree of 2^31 pieces is 31 levels deep, and one node a level waits.
+void PieceTree::Near(const Vector3d& lower, const Vector3d& upper, double reach,
+                     std::vector<int>* near) const {
+  const Corners asked = Widened({lower, upper}, reach);
+  *near = halfspaces_;
+  std::array<int, 64> open;
+  std::size_t waiting = 0;
+  if (!nodes_.empty()) open[waiting++] = 0;
+  while (waiting > 0) {
+    const Node& node = nodes_[open[--waiting]];
+    if (BoxesApart(asked, node.box)) continue;
+    if (node.count == 0) {
+      open[waiting++] = node.first;
+      open[waiting++] = node.first + 1;
+    }
+    for (int i = node.first; i < node.first + node.count; ++i) {
+      if (!BoxesApart(asked, boxes_[order_[i]])) near->push_back(order_[i]);
+    }
+  }
+  std::sort(near->begin(), near->end());
+}
+
+}  // namespace cguide::numeric

@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "cguide/verify/piece_tree_internal.h"
+#include "cguide/numeric/geometry_internal.h"
 #include "tests/numeric/geometry_models.h"
 
-namespace cguide::verify {
+namespace cguide::numeric {
 namespace {
 
 using Eigen::Vector3d;
@@ -38,15 +38,15 @@ TEST_CASE("A tree finds the pieces that a look at every box finds, in order") {
         objects.push_back(test::OneObject("o" + std::to_string(p), SomePiece(rng),
                                           {at, test::RandomQuaternion(rng)}));
       }
-      const numeric::World world(test::OneBodyModel({{{}, Sphere{0.1}}}, objects));
-      const numeric::Geometry& g = world.geometry();
-      const PieceTree tree(g);
+      const World world(test::OneBodyModel({{{}, Sphere{0.1}}}, objects));
+      const Geometry& g = world.geometry();
+      const PieceTree& tree = g.piece_tree;
       for (int query = 0; query < 20; ++query) {
         const Vector3d lower = RandomPoint(rng, 2), upper = lower + RandomPoint(rng, 1).cwiseAbs();
         const double reach = rng() % 2 ? 0 : Between(rng, 0, 0.5);
         std::vector<int> expected;
         for (int p = 0; p < static_cast<int>(g.pieces.size()); ++p) {
-          const bool everywhere = g.pieces[p].kind == numeric::PieceKind::kHalfspace;
+          const bool everywhere = g.pieces[p].kind == PieceKind::kHalfspace;
           if (everywhere || !BoxesApart(Widened({lower, upper}, reach), tree.Box(p))) {
             expected.push_back(p);
           }
@@ -66,16 +66,15 @@ TEST_CASE("Boxes hold their pieces") {
   std::mt19937_64 rng(22);
   for (int trial = 0; trial < 300; ++trial) {
     const Pose X{RandomPoint(rng, 5), test::RandomQuaternion(rng)};
-    const numeric::World world(
+    const World world(
         test::OneBodyModel({{{}, Sphere{0.1}}}, {test::OneObject("o", SomePiece(rng), X)}));
-    const numeric::ObstaclePiece& piece = world.geometry().pieces[0];
-    if (piece.kind != numeric::PieceKind::kConvex) continue;
-    const PieceTree tree(world.geometry());
+    const ObstaclePiece& piece = world.geometry().pieces[0];
+    if (piece.kind != PieceKind::kConvex) continue;
+    const PieceTree& tree = world.geometry().piece_tree;
     const auto& [lower, upper] = tree.Box(0);
     for (int k = 0; k < 20; ++k) {
       const Vector3d n = RandomPoint(rng, 1).normalized();
-      const Vector3d p =
-          numeric::CoreSupport(piece.convex, n) + piece.convex.c + piece.convex.radius * n;
+      const Vector3d p = CoreSupport(piece.convex, n) + piece.convex.c + piece.convex.radius * n;
       CHECK((p.array() >= lower.array()).all());
       CHECK((p.array() <= upper.array()).all());
     }
@@ -83,4 +82,4 @@ TEST_CASE("Boxes hold their pieces") {
 }
 
 }  // namespace
-}  // namespace cguide::verify
+}  // namespace cguide::numeric

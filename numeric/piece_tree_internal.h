@@ -4,17 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "cguide/numeric/geometry_internal.h"
-#include "cguide/verify/taylor_model.h"
+#include "cguide/numeric/obstacle_piece_internal.h"
 
-namespace cguide::verify {
-
-/** n.x over a placed convex set, at most; |n| <= 1 + 8 u. The rounding of this line is within
- s.error (item 4 at PlacementError). */
-inline double HighestStatic(const numeric::Convex& s, const Eigen::Vector3d& n) {
-  return n.dot(s.c) + numeric::CoreExtent(s, n) + s.radius * (1 + 16 * kUnit) +
-         s.error * (1 + 16 * kUnit);
-}
+namespace cguide::numeric {
 
 /** Axis-parallel boxes about all convex pieces and meshes of the obstacles, rounded outwards, in a
  tree. Halfspaces have no box, meshes without triangles are nowhere. */
@@ -29,7 +21,8 @@ class PieceTree {
     int count = 0;  ///< 0 for inner nodes
   };
 
-  explicit PieceTree(const numeric::Geometry& g);
+  PieceTree() = default;
+  explicit PieceTree(const std::vector<ObstaclePiece>& pieces);
 
   const std::vector<Node>& nodes() const { return nodes_; }  ///< the root first; none: no boxes
   const std::vector<int>& order() const { return order_; }
@@ -40,6 +33,9 @@ class PieceTree {
    upper] in each coordinate; in order. */
   std::vector<int> Near(const Eigen::Vector3d& lower, const Eigen::Vector3d& upper,
                         double reach) const;
+  /** The same without allocating where `near` has room. */
+  void Near(const Eigen::Vector3d& lower, const Eigen::Vector3d& upper, double reach,
+            std::vector<int>* near) const;
 
  private:
   void Build(int node, int begin, int end);
@@ -61,4 +57,4 @@ inline PieceTree::Corners Widened(const PieceTree::Corners& box, double by) {
           box.second.array() + most + 2 * kUnit * box.second.array().abs()};
 }
 
-}  // namespace cguide::verify
+}  // namespace cguide::numeric
