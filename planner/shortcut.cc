@@ -8,6 +8,9 @@ namespace {
 /** Cuts that save a smaller part of what they replace are not worth their waypoints. */
 constexpr double kWorthwhile = 0.02;
 
+/** A stretch no longer than its chord but for this part is left as it is. */
+constexpr double kStraight = 0.999;
+
 constexpr int kRoundsPerWaypoint = 5;
 constexpr int kLeastRounds = 200;
 /** Waypoints between ends that are near: the shorter a stretch the likelier its chord holds. */
@@ -47,8 +50,10 @@ void ShortenBetweenWaypoints(const ExtensionContext& context, numeric::Rng& rng,
   if (j - i < 2) return;
   const Waypoints old(waypoints->begin() + static_cast<std::ptrdiff_t>(i),
                       waypoints->begin() + static_cast<std::ptrdiff_t>(j) + 1);
+  const double length = Length(old);
+  if (Distance(old.front(), old.back()) > kStraight * length) return;
   const auto shorter = Replacement(old.front(), old.back(), context);
-  if (!shorter || Length(*shorter) >= Length(old)) return;
+  if (!shorter || Length(*shorter) >= length) return;
   Splice(i, j, *shorter, waypoints);
 }
 
@@ -112,10 +117,13 @@ std::vector<Configuration> Shortcut(std::vector<Configuration> waypoints,
                                     numeric::Rng& rng) {
   const int rounds = options.rounds.value_or(
       std::max(kLeastRounds, kRoundsPerWaypoint * static_cast<int>(waypoints.size())));
-  for (int round = 0; round < rounds && waypoints.size() > 2; ++round) {
+  const auto goes_on = [&] {
+    return waypoints.size() > 2 && !(options.interrupt && options.interrupt->load());
+  };
+  for (int round = 0; round < rounds && goes_on(); ++round) {
     ShortenBetweenWaypoints(context, rng, &waypoints);
   }
-  for (int cut = 0; cut < options.cuts && waypoints.size() > 2; ++cut) {
+  for (int cut = 0; cut < options.cuts && goes_on(); ++cut) {
     CutCorner(context, rng, &waypoints);
   }
   if (options.cuts > 0) LeaveOutWaypoints(context, &waypoints);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <optional>
 
 #include "cguide/numeric/sampling.h"
@@ -10,6 +11,7 @@ namespace cguide::planner {
 struct ShortcutOptions {
   std::optional<int> rounds;  ///< between waypoints; unset: five a waypoint, at least 200
   int cuts = 0;               ///< then between any points of the guide
+  const std::atomic<bool>* interrupt = nullptr;  ///< set from elsewhere: stops with what there is
 };
 
 /** Replaces parts of a guide by shorter ones: between two random waypoints, every other time of

@@ -134,7 +134,44 @@ section_hold() {
   expect 3 plan "$feet" -o "$work/g.json" --hold RARM_JOINT5
   says "the goal has"
   expect 2 plan "$feet" -o "$work/g.json" --hold RLEG_JOINT5 --planner contacts
+  # A roadmap does not say which links its edges hold.
+  expect 2 plan "$feet" -o "$work/g.json" --hold RLEG_JOINT5 --planner prm --roadmap "$work/map.json"
+  says "--roadmap"
+  expect 2 plan "$feet" -o "$work/g.json" --hold RLEG_JOINT5 --space free
+  expect 2 plan "$feet" -o "$work/g.json" --hold RLEG_JOINT5 --link flow
+  expect 2 plan "$feet" -o "$work/g.json" --hold RLEG_JOINT5 --extension 0.5
+  expect 2 plan --hold RLEG_JOINT5   # one link an option: the problem is missing
+  expect 0 plan --hold RLEG_JOINT5 "$feet" -o "$work/order.json" --iteration-limit 2000 --quiet
   [ ! -e "$work/g.json" ] || fail "a refused plan wrote a file"
+}
+
+# What was asked for and cannot be is refused, not left out; nothing takes the place of an input.
+section_plan_rules() {
+  free="plan $room -o $work/g.json --space free"
+  expect 2 $free --planner contacts
+  expect 2 $free --robust mu=0.1
+  expect 2 $free --link flow
+  expect 2 $free --certificate "$work/c.json"
+  expect 2 plan "$room" -o "$work/g.json" --edges sampled --robust mu=0.1
+  says "--robust"
+  expect 2 plan "$room" -o "$work/g.json" --edges sampled --certificate "$work/c.json"
+  expect 2 plan "$room" -o "$work/g.json" --edge-step 0.1
+  sed "s#\.\./robots#$fixtures/robots#g; s#epsilon_m:#model: nearest\n  epsilon_m:#; /sites:/,/LLEG/d" "$room" >"$work/nearest.yaml"
+  expect 3 plan "$work/nearest.yaml" -o "$work/g.json" --robust mu=0.1
+  says "nearest"
+  cp "$room" "$work/own.yaml"
+  sed -i "s#\.\./robots#$fixtures/robots#g" "$work/own.yaml"
+  cp "$work/own.yaml" "$work/kept.yaml"
+  expect 3 plan "$work/own.yaml" -o "$work/own.yaml"
+  says "twice"
+  expect 3 plan "$work/own.yaml" -o "$work/g.json" --certificate "$work/../$(basename "$work")/g.json"
+  expect 3 plan "$work/own.yaml" -o "$work/g.json" --stats "$work/own.yaml"
+  cmp -s "$work/own.yaml" "$work/kept.yaml" || fail "the problem was written over"
+  [ ! -e "$work/g.json" ] || fail "a refused plan wrote a file"
+  expect 0 plan "$work/own.yaml" -o "$work/g.json"
+  expect 3 audit "$work/g.json" -o "$work/g.json"
+  expect 3 view "$work/g.json" -o "$work/g.json"
+  expect 0 audit "$work/g.json"
 }
 
 section_reproducible() {

@@ -144,6 +144,7 @@ int FindCritical(const AuditArguments& arguments, const Subject& subject) {
 }  // namespace
 
 int RunAudit(const AuditArguments& arguments) {
+  RequireDistinct({arguments.path, arguments.problem, arguments.output, arguments.certificate});
   if (!arguments.output.empty()) RequireWritable(arguments.output);
   if (!arguments.certificate.empty()) RequireWritable(arguments.certificate);
   const Subject subject =

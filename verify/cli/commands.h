@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace cguide::cli {
 
@@ -30,6 +31,8 @@ struct PathArguments {
   std::string root;             ///< x,y,z,qx,qy,qz,qw where the file has no root
 };
 
+inline constexpr double kEdgeStep = 0.005;
+
 struct PlanArguments {
   CommonArguments common;
   std::string problem;
@@ -39,12 +42,12 @@ struct PlanArguments {
   std::uint64_t seed = 1;
   double time_limit_s = 300;
   long iteration_limit = 10'000'000;
-  std::string edges = "proved";  ///< proved, sampled
-  std::string certificate;       ///< file that takes the proofs, or empty
-  std::string robust;            ///< "mu=0.05,pose_mm=2,com_mm=5": of every model in the box
-  double edge_step = 0.005;
-  double extension = 0;           ///< 0: the planner's default
-  std::string link = "straight";  ///< straight, flow
+  std::string edges = "proved";     ///< proved, sampled
+  std::string certificate;          ///< file that takes the proofs, or empty
+  std::string robust;               ///< "mu=0.05,pose_mm=2,com_mm=5": of every model in the box
+  std::optional<double> edge_step;  ///< of the samples; else kEdgeStep
+  double extension = 0;             ///< 0: the planner's default
+  std::string link = "straight";    ///< straight, flow
   std::optional<int> shortcut_rounds;
   int corner_cuts = 0;
   std::string stats;              ///< file for times and counters, or empty

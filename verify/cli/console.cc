@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <set>
 #include <thread>
 
 #include "cguide/exact/core/error.h"
@@ -75,6 +76,17 @@ void RequireWritable(const std::filesystem::path& file) {
               file.string() + ": cannot be written; " +
                   (folder_ok ? "it is a folder, name a file in it"
                              : "create the folder " + folder.string() + " or choose another one"));
+}
+
+void RequireDistinct(const std::vector<std::filesystem::path>& files) {
+  std::set<std::filesystem::path> known;
+  for (const std::filesystem::path& file : files) {
+    if (file.empty()) continue;
+    if (!known.insert(std::filesystem::weakly_canonical(file)).second) {
+      throw Error(Error::Code::kBadInput,
+                  file.string() + ": is named twice; choose another file for one of them");
+    }
+  }
 }
 
 }  // namespace cguide::cli

@@ -45,4 +45,8 @@ int ThreadCount(const CommonArguments& common);
  exists and is writable. */
 void RequireWritable(const std::filesystem::path& file);
 
+/** @throws Error (kBadInput) where two of the files, of those that are named, are one: what is
+ written would take the place of the other. */
+void RequireDistinct(const std::vector<std::filesystem::path>& files);
+
 }  // namespace cguide::cli

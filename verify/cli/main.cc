@@ -6,6 +6,7 @@
 #include "cguide/exact/core/error.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
+#include "cguide/verify/cli/plan_rules.h"
 #include "cguide/verify/cli/robust_option.h"
 #include "cguide/verify/cli/version.h"
 
@@ -56,9 +57,9 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
   c->add_option("--robust", a->robust,
                 "mu=M,pose_mm=P,com_mm=C: take edges that are proved for every model in this box")
       ->check(CLI::Validator(RobustnessProblem, "BOX"));
-  c->add_option("--edge-step", a->edge_step, "Distance between the samples, with --edges sampled")
-      ->check(CLI::Range(1e-4, 1.0))
-      ->capture_default_str();
+  c->add_option("--edge-step", a->edge_step,
+                "Distance between the samples, with --edges sampled; default: 0.005")
+      ->check(CLI::Range(1e-4, 1.0));
   c->add_option("--extension", a->extension, "Length of an extension of a tree")
       ->check(CLI::Range(0.01, 10.0));
   c->add_option("--link", a->link,
@@ -75,15 +76,11 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
   c->add_option("--stats", a->stats, "File for times, counters and the guide's quality (JSON)");
   c->add_option("--roadmap", a->roadmap,
                 "With --planner prm: roadmap to use again, if the file is there, and to write");
-  c->add_option("--hold", a->hold, "Link that stays where it is, within 1 mm; may be repeated");
+  c->add_option("--hold", a->hold, "Link that stays where it is, within 1 mm; may be repeated")
+      ->allow_extra_args(false);
   c->callback([a] {
-    if (!a->hold.empty() && a->planner == "contacts") {
-      throw CLI::ValidationError("--hold",
-                                 "needs --planner rrt or prm, which move no limb on purpose");
-    }
-    if (!a->roadmap.empty() && a->planner != "prm") {
-      throw CLI::ValidationError("--roadmap", "needs --planner prm");
-    }
+    const auto conflict = PlanConflict(*a);
+    if (conflict) throw CLI::ValidationError(conflict->first, conflict->second);
   });
   AddCommon(c, &a->common);
   return c;

@@ -44,14 +44,23 @@ bool DecidesWholeEdges(const PlanArguments& arguments, const Model& model) {
   return arguments.edges == "proved" && model.contact.model == ContactModel::kSites;
 }
 
-/** Contacts mean nothing in C_free: there the plain trees are left. */
-bool SearchesContacts(const PlanArguments& arguments) {
-  return arguments.planner == "contacts" && arguments.space == "guide";
+double EdgeStep(const PlanArguments& arguments) { return arguments.edge_step.value_or(kEdgeStep); }
+
+bool SearchesContacts(const PlanArguments& arguments) { return arguments.planner == "contacts"; }
+
+/** @throws Error (kBadInput) where proofs are asked for that cannot be had. */
+void RequireProvable(const PlanArguments& arguments, const Model& model) {
+  if (arguments.robust.empty() && arguments.certificate.empty()) return;
+  if (arguments.edges != "proved" || DecidesWholeEdges(arguments, model)) return;
+  throw Error(Error::Code::kBadInput,
+              arguments.problem + ": contact.model nearest has no proofs; leave out " +
+                  (arguments.robust.empty() ? "--certificate" : "--robust") +
+                  " or take contact.model sites");
 }
 
 /** How the oracle accepts edges. */
 std::string DescribeTest(const PlanArguments& arguments, const Model& model) {
-  if (!DecidesWholeEdges(arguments, model)) return "sampled(" + Short(arguments.edge_step) + ")";
+  if (!DecidesWholeEdges(arguments, model)) return "sampled(" + Short(EdgeStep(arguments)) + ")";
   return arguments.robust.empty() ? "whole" : "whole(" + arguments.robust + ")";
 }
 
@@ -62,7 +71,7 @@ EdgeOracle MakeOracle(const PlanArguments& arguments, const World& world, numeri
     options.robust = ParseRobustness(arguments.robust);
     return verify::MakeWholeOracle(world, options);
   }
-  return numeric::MakeSampledOracle(world, {arguments.edge_step, space});
+  return numeric::MakeSampledOracle(world, {EdgeStep(arguments), space});
 }
 
 /** Whether the audit will prove an edge. */
@@ -168,9 +177,9 @@ Plan MakePlan(const PlanArguments& arguments, const World& world, const Problem&
   const planner::ExtensionContext context{world, oracle, extension, &workspace,
                                           &plan.result.counters};
   const auto begin = std::chrono::steady_clock::now();
-  plan.result.waypoints =
-      planner::Shortcut(std::move(plan.result.waypoints),
-                        {arguments.shortcut_rounds, arguments.corner_cuts}, context, rng);
+  plan.result.waypoints = planner::Shortcut(
+      std::move(plan.result.waypoints),
+      {arguments.shortcut_rounds, arguments.corner_cuts, &InterruptFlag()}, context, rng);
   plan.shortcut_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return plan;
@@ -185,7 +194,7 @@ void MendUnproved(const PlanArguments& arguments, const World& world, Plan* plan
                                           &plan->result.counters};
   numeric::Rng rng = planner::JobRng(arguments.seed, kMendStream);
   std::vector<Configuration>& path = plan->result.waypoints;
-  for (std::size_t end = 1; end < path.size(); ++end) {
+  for (std::size_t end = 1; end < path.size() && !InterruptFlag(); ++end) {
     if (planner::EdgeHolds(path[end - 1], path[end], context)) continue;
     const auto mending = planner::MendEdge(path, end, {}, context, rng);
     if (!mending) continue;
@@ -226,12 +235,14 @@ std::string ConcludeEdges(const PlanArguments& arguments, const World& world, Pl
   Path path{ColumnNames(model.robot), plan->result.waypoints};
   verify::WholeAuditOptions options;
   options.robust = ParseRobustness(arguments.robust);
+  options.interrupt = &InterruptFlag();
   verify::WholeAudit audit = verify::AuditWhole(world, path, options);
   if (audit.verdict != Verdict::kHolds) {
     MendUnproved(arguments, world, plan);
     path.waypoints = plan->result.waypoints;
     audit = verify::AuditWhole(world, path, options);
   }
+  if (InterruptFlag()) return "";
   std::vector<const check::EdgeProof*> proofs;
   for (std::size_t i = 0; i < audit.edges.size(); ++i) {
     const verify::EdgeFinding& edge = audit.edges[i];
@@ -284,6 +295,8 @@ nlohmann::ordered_json Quality(const World& world, const Plan& plan, int threads
   add("least_clearance_m", audit.clearance);
   add("least_com_margin_m", audit.com_margin);
   add("least_force_margin", audit.force_margin);
+  quality["force_margin_of"] =
+      "pyramids of " + std::to_string(world.model().contact.generators) + " sides in the cones";
   quality["contacts_made"] = audit.contacts_made;
   quality["contacts_broken"] = audit.contacts_broken;
   return quality;
@@ -306,6 +319,15 @@ void WriteStats(const PlanArguments& arguments, const World& world, const Plan& 
   }
   for (const auto& [name, value] : Counters(plan.result)) stats["counters"][name] = value;
   numeric::io::WriteFileAtomically(arguments.stats, stats.dump(2) + "\n");
+}
+
+std::string NextStep(const PlanArguments& arguments) {
+  const std::string view = "cguide view " + arguments.output, page = " -o page.html";
+  if (arguments.certificate.empty()) {
+    return view + page + "   or   cguide audit " + arguments.output + " --certificate FILE";
+  }
+  return view + " --certificate " + arguments.certificate + page + "   or   cguide-check " +
+         arguments.certificate;
 }
 
 int Conclude(const PlanArguments& arguments, const Problem& problem, const Plan& plan) {
@@ -331,23 +353,26 @@ int Conclude(const PlanArguments& arguments, const Problem& problem, const Plan&
         "held links are within " + numeric::Millimetres(kHoldTolerance) +
             " of their places for every s, by a bound that certificates do not carry");
   }
-  Say(arguments.common, "next: cguide view " + arguments.output +
-                            " -o page.html   or   cguide audit " + arguments.output);
+  Say(arguments.common, "next: " + NextStep(arguments));
   return kExitOk;
 }
 
 }  // namespace
 
 int RunPlan(const PlanArguments& arguments) {
+  RequireDistinct({arguments.problem, arguments.output, arguments.stats, arguments.certificate,
+                   arguments.roadmap});
   RequireWritable(arguments.output);
   if (!arguments.stats.empty()) RequireWritable(arguments.stats);
   if (!arguments.certificate.empty()) RequireWritable(arguments.certificate);
   if (!arguments.roadmap.empty()) RequireWritable(arguments.roadmap);
   const Problem problem = numeric::io::ReadProblem(arguments.problem);
   Warn(arguments.common, problem.warnings);
+  RequireProvable(arguments, problem.model);
   const World world(problem.model);
   Plan plan = MakePlan(arguments, world, problem);
   if (plan.result.stop == StopReason::kSolved) plan.edges = ConcludeEdges(arguments, world, &plan);
+  if (InterruptFlag()) plan.result.stop = StopReason::kInterrupted;
   const int code = Conclude(arguments, problem, plan);
   WriteStats(arguments, world, plan);
   return code;

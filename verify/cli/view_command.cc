@@ -109,6 +109,7 @@ void AddMargins(const numeric::World& world, const Path& path,
 }  // namespace
 
 int RunView(const ViewArguments& arguments) {
+  RequireDistinct({arguments.guide, arguments.problem, arguments.certificate, arguments.output});
   RequireWritable(arguments.output);
   const Subject subject =
       ReadSubject(arguments.common, arguments.guide, arguments.problem, arguments.reading);
