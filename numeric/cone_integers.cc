@@ -5,30 +5,11 @@
 #include <limits>
 
 #include "cguide/numeric/cone_exact_internal.h"
+#include "cguide/numeric/dyadic_internal.h"
 #include "cguide/numeric/wide_integer_internal.h"
 
 namespace cguide::numeric {
 namespace {
-
-constexpr int kNone = std::numeric_limits<int>::max();
-
-/** x = mantissa 2^exponent with an odd mantissa; 0 has no exponent. */
-struct Dyadic {
-  std::int64_t mantissa = 0;
-  int exponent = kNone;
-};
-
-Dyadic Split(double x) {
-  if (x == 0) return {};
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  const int field = static_cast<int>(bits >> 52) & 2047;
-  constexpr std::uint64_t kHidden = std::uint64_t{1} << 52;
-  std::uint64_t mantissa = bits & (kHidden - 1);
-  if (field > 0) mantissa |= kHidden;
-  const int zeros = std::countr_zero(mantissa);
-  const auto odd = static_cast<std::int64_t>(mantissa >> zeros);
-  return {x < 0 ? -odd : odd, std::max(field, 1) - 1075 + zeros};
-}
 
 /** Three numbers as integers times 2^exponent, the least exponent of one of them (0 for zeros). */
 struct Triple {
@@ -37,12 +18,12 @@ struct Triple {
   bool is_short = true;  ///< the integers are below 2^62
 
   explicit Triple(const double* x) {
-    int lowest = kNone;
+    int lowest = Dyadic::kNone;
     for (int i = 0; i < 3; ++i) {
       part[i] = Split(x[i]);
       lowest = std::min(lowest, part[i].exponent);
     }
-    exponent = lowest == kNone ? 0 : lowest;
+    exponent = lowest == Dyadic::kNone ? 0 : lowest;
     for (Dyadic& d : part) {
       d.exponent = d.mantissa == 0 ? 0 : d.exponent - lowest;
       const auto size = static_cast<std::uint64_t>(std::abs(d.mantissa));

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "cguide/exact/equilibrium.h"
+#include "cguide/numeric/round_cones_internal.h"
 #include "cguide/numeric/stability_contacts_internal.h"
 
 namespace cguide::numeric {
@@ -138,14 +139,23 @@ void Settle(const StabilityQuery& query, const exact::StabilityResult& result,
   }
 }
 
+// The exact verdict on the first `count` scaled contacts as they are stored.
+exact::StabilityResult DecideStored(const StabilityQuery& query, const ScaledContacts& scaled,
+                                    int count) {
+  IntegerEquilibrium lifted;
+  if (LiftEquilibrium(query, scaled, count, &lifted)) {
+    if (auto result = DecideByParallelForces(lifted)) return *std::move(result);
+  }
+  return exact::DecideStability(LiftQuery(query, scaled, count));
+}
+
 void DecideExactly(const StabilityQuery& query, StabilityWorkspace* workspace,
                    SettledStability* settled) {
   const ScaledContacts& scaled = workspace->scratch->contacts;
-  exact::StabilityResult result =
-      exact::DecideStability(LiftQuery(query, scaled, scaled.num_certain));
+  exact::StabilityResult result = DecideStored(query, scaled, scaled.num_certain);
   const bool depends = scaled.num_certain < scaled.count && result.verdict != Verdict::kHolds;
   // Where the certain contacts do not carry the robot, only a refutation with all of them counts.
-  if (depends) result = exact::DecideStability(LiftQuery(query, scaled, scaled.count));
+  if (depends) result = DecideStored(query, scaled, scaled.count);
   if (depends && result.verdict != Verdict::kFails) {
     Decline("depends on contacts that may or may not be active", settled);
   } else if (result.verdict == Verdict::kUndecided) {

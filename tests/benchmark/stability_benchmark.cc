@@ -9,6 +9,7 @@
 #include "cguide/numeric/double_description.h"
 #include "cguide/numeric/friction.h"
 #include "cguide/numeric/margins.h"
+#include "tests/benchmark/exact_stage_section.h"
 #include "tests/benchmark/timing.h"
 #include "tests/numeric/stability_cases.h"
 #include "tests/peers/glpk_peer.h"
@@ -93,6 +94,11 @@ void Report(int patches) {
 
 }  // namespace
 
-int main() {
-  for (const int patches : {1, 2, 3, 4, 8}) Report(patches);
+int main(int argc, char** argv) {
+  // With an argument the exact stage alone.
+  for (const int patches : {1, 2, 3, 4, 8}) {
+    if (argc == 1) Report(patches);
+  }
+  (void)argv;
+  cguide::benchmark_tools::ReportStabilityExactStage(stdout);
 }

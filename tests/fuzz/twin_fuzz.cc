@@ -80,10 +80,10 @@ bool RunTies(const Family& family, const Arguments& arguments) {
     return false;
   }
   std::printf(
-      "%s: %ld of %ld near ties (%ld exact ties), 0 wrong; %ld fast, %ld exact, %ld open; %ld also "
-      "by an independent solver; %.0f s\n",
-      family.name, tally.cases, count, tally.tied, tally.fast, tally.exact, tally.open,
-      tally.checked, clock.seconds());
+      "%s: %ld of %ld near ties (%ld exact ties), 0 wrong; %ld fast, %ld exact; %ld also by an "
+      "independent solver; besides %ld open, %ld proposals refused; %.0f s\n",
+      family.name, tally.cases, count, tally.tied, tally.fast, tally.exact, tally.checked,
+      tally.open, tally.refused, clock.seconds());
   std::fflush(stdout);
   // With fewer a stage may have had no turn.
   if (tally.cases < 1000 || (tally.fast > 0 && tally.exact > 0)) return true;

@@ -14,10 +14,11 @@ namespace cguide::fuzz {
 
 /** How many answers came from which stage. */
 struct Tally {
-  long cases = 0;
+  long cases = 0;    ///< in which a verdict was compared or a proof checked
   long fast = 0;     ///< decided in doubles
   long exact = 0;    ///< decided exactly
-  long open = 0;     ///< undecided, refused or not applicable
+  long open = 0;     ///< undecided or not applicable; of the near ties not among `cases`
+  long refused = 0;  ///< proposals that a certificate did not accept: not among `cases`
   long checked = 0;  ///< compared with an independent solver as well
   long tied = 0;     ///< of the near ties: exactly on the boundary
 };

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <gmpxx.h>
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cguide/exact/equilibrium.h"
+#include "cguide/numeric/stability_contacts_internal.h"
+
+// The stored contacts of a question of static stability over the integers, for its exact stage.
+namespace cguide::numeric {
+
+using Integer3 = std::array<mpz_class, 3>;
+
+/** A revolution cone: u with s = u.w >= 0 and s^2 (mu_den + mu_num) >= |u|^2 ww mu_den. */
+struct IntegerCone {
+  Integer3 w;          ///< the normal, any length
+  mpz_class ww;        ///< |w|^2
+  mpz_class num, den;  ///< mu^2 = num / den
+  mpz_class sum;       ///< num + den
+  double mu = 0;
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< w, to about a unit vector in doubles
+};
+
+/** The contacts about the centre of mass. */
+struct IntegerEquilibrium {
+  struct Contact {
+    Integer3 arm;  ///< times 2^unit: metres
+    int cone = -1;
+  };
+  std::vector<Contact> contacts;
+  std::vector<IntegerCone> cones;  ///< neighbours that have the same share it
+  int unit = 0;
+  Integer3 f;       ///< the direction of -g
+  Rational weight;  ///< -m g = weight f
+};
+
+/** Whether the numbers of the first `count` scaled contacts are of sizes that integers can hold
+ together; fills the result then. */
+bool LiftEquilibrium(const StabilityQuery& query, const ScaledContacts& scaled, int count,
+                     IntegerEquilibrium* result);
+
+// Of integer_face.cc.
+mpz_class Dot(const Integer3& a, const Integer3& b);
+Integer3 Cross(const Integer3& a, const Integer3& b);
+
+/** The sign of s^2 (1 + mu^2) - |u|^2 |w|^2 where s = u.w > 0: positive inside the cone, 0 on its
+ boundary; negative for every other u but 0. */
+int SignInCone(const IntegerCone& cone, const Integer3& u);
+
+/** Whether g.u <= 0 for every force u of the cone; exact::IsNeverDrivenBy over integers. */
+bool IsNeverDriven(const IntegerCone& cone, const Integer3& g);
+
+/** y_f + y_m x arm, what the wrench y sees at a contact, with arms in units. */
+Integer3 SeenAt(const IntegerEquilibrium& e, int contact, const Integer3& y_f, const Integer3& y_m);
+
+/** Whether y is at most 0 on the wrenches of all contacts. */
+bool IsPolar(const IntegerEquilibrium& e, const Integer3& y_f, const Integer3& y_m);
+
+/** Dimension of the span of the wrenches of all admissible forces; nothing where contacts without
+ friction ask for more than a look at their points. */
+std::optional<int> RankOf(const IntegerEquilibrium& e);
+
+/** y with arms in metres. */
+Vector6q ToMetres(const IntegerEquilibrium& e, const Integer3& y_f, const Integer3& y_m);
+
+/** Decides where forces along the weight itself do, or show how: parallel_forces.cc. */
+std::optional<exact::StabilityResult> DecideByParallelForces(const IntegerEquilibrium& e);
+
+}  // namespace cguide::numeric
