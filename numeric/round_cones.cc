@@ -71,7 +71,8 @@ bool LiftCone(const Contact& contact, IntegerCone* cone) {
   const int shift = mu.mantissa == 0 ? 0 : mu.exponent;
   if (std::abs(shift) > kMaxBits) return false;
   cone->mu = contact.friction;
-  cone->n = contact.n_W;
+  long exponent;
+  cone->n = ToDoubles(cone->w, &exponent).normalized();
   SetInteger(mu, std::min(shift, 0), &cone->num);
   cone->num *= cone->num;
   cone->den = mpz_class(1) << static_cast<unsigned>(-2 * std::min(shift, 0));
@@ -123,6 +124,22 @@ bool LiftEquilibrium(const StabilityQuery& query, const ScaledContacts& scaled, 
   return true;
 }
 
+Eigen::Vector3d ToDoubles(const Integer3& x, long* exponent) {
+  constexpr long kLowest = std::numeric_limits<long>::min();
+  long exponents[3];
+  Eigen::Vector3d result;
+  *exponent = kLowest;
+  for (int k = 0; k < 3; ++k) {
+    result[k] = mpz_get_d_2exp(&exponents[k], x[k].get_mpz_t());
+    if (x[k] != 0) *exponent = std::max(*exponent, exponents[k]);
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (x[k] == 0) continue;
+    result[k] = std::ldexp(result[k], static_cast<int>(std::max(exponents[k] - *exponent, -2000L)));
+  }
+  return result;
+}
+
 int SignInCone(const IntegerCone& cone, const Integer3& u) {
   const mpz_class along = Dot(u, cone.w);
   if (along <= 0) return -1;
@@ -169,6 +186,11 @@ std::optional<int> RankOf(const IntegerEquilibrium& e) {
     }
   }
   return second != nullptr ? 5 : first != nullptr ? 3 : 0;
+}
+
+bool IsEven(const IntegerEquilibrium& e) {
+  return std::all_of(e.cones.begin(), e.cones.end(),
+                     [&](const IntegerCone& cone) { return cone.w == e.cones[0].w; });
 }
 
 // y_m x (arm 2^-unit in integers) is (y_m 2^-unit) x arm.

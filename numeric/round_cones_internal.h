@@ -22,7 +22,7 @@ struct IntegerCone {
   mpz_class num, den;  ///< mu^2 = num / den
   mpz_class sum;       ///< num + den
   double mu = 0;
-  Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< w, to about a unit vector in doubles
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< w/|w| in doubles, within 4 u
 };
 
 /** The contacts about the centre of mass. */
@@ -64,10 +64,20 @@ bool IsPolar(const IntegerEquilibrium& e, const Integer3& y_f, const Integer3& y
  friction ask for more than a look at their points. */
 std::optional<int> RankOf(const IntegerEquilibrium& e);
 
+/** Whether all normals are stored as the same. */
+bool IsEven(const IntegerEquilibrium& e);
+
 /** y with arms in metres. */
 Vector6q ToMetres(const IntegerEquilibrium& e, const Integer3& y_f, const Integer3& y_m);
 
+/** x 2^-exponent in doubles within 2 u of each entry, the largest in [1/2, 1); zero stays zero. */
+Eigen::Vector3d ToDoubles(const Integer3& x, long* exponent);
+
 /** Decides where forces along the weight itself do, or show how: parallel_forces.cc. */
 std::optional<exact::StabilityResult> DecideByParallelForces(const IntegerEquilibrium& e);
+
+/** Decides from where the simplex on doubles ended, or gives up: round_simplex.cc. Rank 6 alone. */
+std::optional<exact::StabilityResult> DecideBySimplex(const IntegerEquilibrium& e,
+                                                      const SimplexEnd& found);
 
 }  // namespace cguide::numeric

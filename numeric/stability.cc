@@ -36,11 +36,14 @@ StabilityAnswer TryStability(const StabilityQuery& query, StabilityWorkspace* wo
   ScaledContacts& contacts = workspace->scratch->contacts;
   Balance& balance = workspace->scratch->balance;
   if (!ScaleContacts(query, &contacts)) return answer;
+  SimplexEnd& end = workspace->scratch->end;
+  end.count = -1;
   Vector6d y;
-  Proposal proposal = SolveStability(contacts, contacts.num_certain, &balance, &y, &answer.pivots);
+  Proposal proposal =
+      SolveStability(contacts, contacts.num_certain, &balance, &y, &answer.pivots, &end);
   if (proposal == Proposal::kNone && contacts.num_certain < contacts.count) {
     // The certain contacts do not carry the robot; do all that are possible leave it unstable?
-    proposal = SolveStability(contacts, contacts.count, &balance, &y, &answer.pivots);
+    proposal = SolveStability(contacts, contacts.count, &balance, &y, &answer.pivots, &end);
   }
   if (proposal == Proposal::kInterior) {
     answer.verdict = Verdict::kHolds;

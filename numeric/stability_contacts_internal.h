@@ -68,14 +68,27 @@ bool ProveOutside(const ScaledContacts& contacts, const Vector6d& y);
 /** What the simplex found. */
 enum class Proposal { kInterior, kOutside, kNone };
 
+/** Where the simplex stopped undecided: the base and the columns of its last basis, and a y with
+ room to spare on all cones, if one was found. For the exact stage, which trusts none of it. */
+struct SimplexEnd {
+  int count = -1;  ///< of the contacts in question
+  Generator base[6], column[6];
+  int direction_row = -1;  ///< whose column is the direction; -1: nothing to start from
+  bool has_room = false;
+  Vector6d room = Vector6d::Zero();  ///< of scaled arms
+  double length = 1;                 ///< m
+};
+
 /** Proposes a balance over the first `count` contacts or a separating y, asking the certificates
- above as it goes, so that kInterior and kOutside are proven. */
+ above as it goes, so that kInterior and kOutside are proven; where it is neither, says where it
+ stopped. */
 Proposal SolveStability(const ScaledContacts& contacts, int count, Balance* balance, Vector6d* y,
-                        int* pivots);
+                        int* pivots, SimplexEnd* end = nullptr);
 
 struct StabilityWorkspace::Scratch {
   ScaledContacts contacts;
   Balance balance;
+  SimplexEnd end;  ///< of the last question
 };
 
 }  // namespace cguide::numeric

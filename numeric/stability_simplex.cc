@@ -401,6 +401,10 @@ Proposal Simplex::Run() {
       }
     }
     if (step == Step::kUnbounded) return Proposal::kNone;
+    if (step == Step::kOptimal && !has_room_) {
+      room_ = y_;
+      has_room_ = true;
+    }
     if (step == Step::kOptimal && y_.head<3>().dot(c_.v_f) > 0 && ProveOutside(c_, y_)) {
       return Proposal::kOutside;
     }
@@ -408,10 +412,21 @@ Proposal Simplex::Run() {
   return Proposal::kNone;
 }
 
+void Simplex::ReportEnd(SimplexEnd* end) const {
+  end->count = count_;
+  end->length = c_.length;
+  end->has_room = has_room_;
+  end->room = room_;
+  end->direction_row = full_rank_ ? direction_row_ : -1;
+  std::copy(balance_->base, balance_->base + 6, end->base);
+  std::copy(column_, column_ + 6, end->column);
+}
+
 Proposal SolveStability(const ScaledContacts& contacts, int count, Balance* balance, Vector6d* y,
-                        int* pivots) {
+                        int* pivots, SimplexEnd* end) {
   Simplex simplex(contacts, count, balance);
   const Proposal proposal = simplex.Run();
+  if (end != nullptr && proposal == Proposal::kNone) simplex.ReportEnd(end);
   *y = simplex.y();
   *pivots += simplex.pivots();
   return proposal;

@@ -29,6 +29,8 @@ class Simplex {
   /** The whole question, certificates included. */
   Proposal Run();
 
+  void ReportEnd(SimplexEnd* end) const;
+
   /** Pieces of it, for the margins. Prepare finds the base and the first feasible point (false
    where there is nothing to start from); Iterate makes one pivot towards the largest tau, earning
    s. */
@@ -117,6 +119,8 @@ class Simplex {
   Vector6d rate_ = Vector6d::Zero();
   double reached_ = 0;
   std::vector<WeightedGenerator> held_;  // not in the basis, left at a weight by a ray
+  bool has_room_ = false;
+  Vector6d room_ = Vector6d::Zero();  // the first y at an optimum with room s
   int pivots_ = 0;
 };
 

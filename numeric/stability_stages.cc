@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "cguide/exact/equilibrium.h"
@@ -139,12 +140,32 @@ void Settle(const StabilityQuery& query, const exact::StabilityResult& result,
   }
 }
 
-// The exact verdict on the first `count` scaled contacts as they are stored.
-exact::StabilityResult DecideStored(const StabilityQuery& query, const ScaledContacts& scaled,
-                                    int count) {
+std::optional<exact::StabilityResult> DecideFromFloats(const IntegerEquilibrium& lifted, int count,
+                                                       StabilityWorkspace* workspace) {
+  SimplexEnd& end = workspace->scratch->end;
+  if (end.count != count) {
+    Vector6d y;
+    int pivots = 0;
+    SolveStability(workspace->scratch->contacts, count, &workspace->scratch->balance, &y, &pivots,
+                   &end);
+  }
+  if (end.count != count) return std::nullopt;  // decided: only where fewer contacts are not
+  return DecideBySimplex(lifted, end);
+}
+
+// The exact verdict on the first `count` scaled contacts as they are stored. Over integers where
+// that will do, on even ground by forces along the weight first; the twin's pyramids for the rest.
+exact::StabilityResult DecideStored(const StabilityQuery& query, int count,
+                                    StabilityWorkspace* workspace) {
+  const ScaledContacts& scaled = workspace->scratch->contacts;
   IntegerEquilibrium lifted;
   if (LiftEquilibrium(query, scaled, count, &lifted)) {
-    if (auto result = DecideByParallelForces(lifted)) return *std::move(result);
+    std::optional<exact::StabilityResult> result;
+    const bool even = IsEven(lifted);
+    if (even) result = DecideByParallelForces(lifted);
+    if (!result) result = DecideFromFloats(lifted, count, workspace);
+    if (!result && !even) result = DecideByParallelForces(lifted);
+    if (result) return *std::move(result);
   }
   return exact::DecideStability(LiftQuery(query, scaled, count));
 }
@@ -152,10 +173,10 @@ exact::StabilityResult DecideStored(const StabilityQuery& query, const ScaledCon
 void DecideExactly(const StabilityQuery& query, StabilityWorkspace* workspace,
                    SettledStability* settled) {
   const ScaledContacts& scaled = workspace->scratch->contacts;
-  exact::StabilityResult result = DecideStored(query, scaled, scaled.num_certain);
+  exact::StabilityResult result = DecideStored(query, scaled.num_certain, workspace);
   const bool depends = scaled.num_certain < scaled.count && result.verdict != Verdict::kHolds;
   // Where the certain contacts do not carry the robot, only a refutation with all of them counts.
-  if (depends) result = DecideStored(query, scaled, scaled.count);
+  if (depends) result = DecideStored(query, scaled.count, workspace);
   if (depends && result.verdict != Verdict::kFails) {
     Decline("depends on contacts that may or may not be active", settled);
   } else if (result.verdict == Verdict::kUndecided) {

@@ -1,5 +1,6 @@
 #include "tests/benchmark/exact_stage_section.h"
 
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <vector>
@@ -92,11 +93,11 @@ Times TimeStances(std::size_t wanted) {
     while (true) {
       query.com_W = (stable + unstable) / 2;
       const Verdict verdict = TryStability(query, &workspace).verdict;
-      if (verdict == Verdict::kUndecided) break;
+      const bool ended = query.com_W == stable || query.com_W == unstable;
+      if (verdict == Verdict::kUndecided || ended) break;
       (verdict == Verdict::kHolds ? stable : unstable) = query.com_W;
-      if ((unstable - stable).norm() < 0x1p-52) break;
     }
-    Ask(query, 50, &workspace, &times);
+    Ask(query, std::getenv("S") ? 1000000 : 50, &workspace, &times);
   }
   return times;
 }
@@ -110,9 +111,12 @@ void ReportStabilityExactStage(std::FILE* out) {
       "exact twin on one in 50\n\n"
       "| near ties | asked | settled | on the boundary | open | median | 99 %% | 99.9 %% | "
       "largest | twin: median | 99 %% |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
-  Print(out, "one plane, few bits", TimeFlat(false, 10000));
-  Print(out, "one plane, all bits", TimeFlat(true, 10000));
-  Print(out, "slopes and walls", TimeStances(3000));
+  Print(out, "one plane, few bits",
+        TimeFlat(false, std::getenv("M") ? std::atoi(std::getenv("M")) : 10000));
+  Print(out, "one plane, all bits",
+        TimeFlat(true, std::getenv("M") ? std::atoi(std::getenv("M")) : 10000));
+  Print(out, "slopes and walls",
+        TimeStances(std::getenv("N") ? std::atoi(std::getenv("N")) : 3000));
 }
 
 }  // namespace cguide::benchmark_tools

@@ -7,7 +7,8 @@
 // across an axis; the centre of mass and the pull are then within some units of rounding of a tie.
 //
 // Bracketed stances: contacts on floors, slopes and walls, and two centres of mass at most 2^-30 m
-// apart of which one is proved stable and the other unstable.
+// apart of which one is proved stable and the other unstable; between them, where doubles decline,
+// the exact stage is asked and its proof checked.
 #include <optional>
 
 #include "cguide/exact/equilibrium.h"
@@ -100,6 +101,22 @@ std::string CheckFlat(const FlatStance& stance, const FlatTie& tie, long every,
                                                  : "a fast verdict is not proved by its witness";
 }
 
+// Between a stable and an unstable centre of mass, where doubles decline: the proof tells.
+std::string CheckMiddle(const numeric::StabilityQuery& query,
+                        numeric::StabilityWorkspace* workspace, Tally* tally) {
+  const numeric::SettledStability settled = Stability(query, workspace);
+  if (!settled.exact) return "an open question was not asked of the exact stage";
+  if (!IsProof(Lifted(query), *settled.exact)) return "the exact stage's witness proves nothing";
+  if (settled.exact->reason == exact::StabilityReason::kLadder) {
+    ++tally->open;
+    return "";
+  }
+  ++tally->cases;
+  ++tally->exact;
+  tally->tied += settled.exact->verdict == Verdict::kUndecided;
+  return "";
+}
+
 std::string CheckProved(const numeric::StabilityQuery& query,
                         const numeric::StabilityAnswer& answer, Tally* tally) {
   ++tally->cases;
@@ -132,8 +149,14 @@ std::string CheckBracket(TieRng& rng, numeric::StabilityWorkspace* workspace, Ta
       (middle.verdict == Verdict::kHolds ? inner : outer) = middle;
     }
     if ((unstable - stable).norm() > kNearTie || stable == center) continue;
+    query.com_W = (stable + unstable) / 2;
+    std::string wrong;
+    if (TryStability(query, workspace).verdict == Verdict::kUndecided) {
+      wrong = CheckMiddle(query, workspace, tally);
+    }
+    if (!wrong.empty()) return wrong;
     query.com_W = stable;
-    std::string wrong = CheckProved(query, inner, tally);
+    wrong = CheckProved(query, inner, tally);
     query.com_W = unstable;
     if (wrong.empty()) wrong = CheckProved(query, outer, tally);
     if (!wrong.empty()) return wrong;

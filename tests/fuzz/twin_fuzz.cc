@@ -1,7 +1,9 @@
 // Random cases for the pairs of twins, in an ordinary build, as fast as they go:
 //   twin_fuzz [FAMILY ...] [--seed N] [--ties N | --count M] [--seconds S] [--length BYTES]
+//     [--independent N]
 // --ties: near ties made on purpose, until N of them or S seconds are reached. Both stages must
 // have decided some of them.
+// --independent: about how many of the cases are also given to the independent solver (10000).
 // --count: cases made from random bytes, M of them or for S seconds.
 // Case i (batch i of near ties) of a family comes from a generator seeded with seed + i, so that
 // one can be repeated alone. Exit 1 at the first wrong answer, with the command that repeats it.
@@ -104,6 +106,8 @@ Arguments Parse(int argc, char** argv) {
       arguments.ties = number();
     } else if (std::strcmp(argv[i], "--seconds") == 0) {
       arguments.seconds = static_cast<double>(number());
+    } else if (std::strcmp(argv[i], "--independent") == 0) {
+      arguments.independent = static_cast<long>(std::max(1ULL, number()));
     } else if (std::strcmp(argv[i], "--length") == 0) {
       arguments.length = static_cast<std::size_t>(number());
     } else {
