@@ -89,6 +89,16 @@ bool IsBoundary(const LadderedStability& ladder) {
          (ladder.exact->reason == Reason::kBoundary || ladder.exact->reason == Reason::kRank);
 }
 
+/** A proved tie says why: forces that balance, and at rank 6 the wrench that supports the cone. It
+ is none of the contacts alone that are certain where others may be active. */
+void ReportTie(LadderedStability* ladder) {
+  const bool sure = std::all_of(ladder->contacts.begin(), ladder->contacts.end(),
+                                [](const Contact& contact) { return contact.certain; });
+  if (ladder->answer.verdict != Verdict::kUndecided || !sure || !IsBoundary(*ladder)) return;
+  ladder->forces = SumForces(*ladder->exact, ladder->contacts);
+  SetSeparator(*ladder->exact, &ladder->answer.separator);
+}
+
 /** No finer placement can change an undecided answer about data without error. */
 bool IsFinal(const LadderedStability& ladder) {
   return ladder.answer.verdict != Verdict::kUndecided || ladder.width == 0;
@@ -105,6 +115,7 @@ LadderedStability FromStored(SettledStability settled, const StabilityQuery& que
   result.forces.assign(result.answer.forces.begin(), result.answer.forces.end());
   result.width = WidthOf(query);
   result.exact = std::move(settled.exact);
+  ReportTie(&result);
   return result;
 }
 
@@ -136,6 +147,7 @@ LadderedStability StabilityLadder::DecideAt(const Configuration& q, int bits, in
     SetSeparator(decided, &result.answer.separator);
   }
   result.exact = std::move(decided);
+  ReportTie(&result);
   return result;
 }
 

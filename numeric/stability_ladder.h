@@ -32,9 +32,11 @@ struct LadderedStability {
    fails the separating wrench rounded to doubles; `exact` is the proof. */
   StabilityAnswer answer;
   StabilityRung rung = StabilityRung::kUndecided;
-  std::string reason;                ///< one clause for the user where undecided, else empty
-  std::vector<Contact> contacts;     ///< of the rung that spoke last, rounded to doubles
-  std::vector<WitnessForce> forces;  ///< a balance where kHolds, rounded; indices into `contacts`
+  std::string reason;             ///< one clause for the user where undecided, else empty
+  std::vector<Contact> contacts;  ///< of the rung that spoke last, rounded to doubles
+  /** A balance where kHolds and on a boundary that is proved, rounded; indices into `contacts`. On
+   a boundary of rank 6 `answer` has the wrench y that supports the cone: y.a <= 0 = y.v. */
+  std::vector<WitnessForce> forces;
   /** Bound on how far the contacts and the centre of mass that the last rung saw are from the
    truth (m): the largest of their errors. */
   double width = 0;

@@ -330,6 +330,51 @@ section_recorded_motion() {
   done
 }
 
+# A box of which the centre of mass is exactly over an edge of its support, or over its only point.
+box_on_edge() {
+  cat >"$work/box.urdf" <<'XML'
+<robot name="box"><link name="box">
+  <inertial><origin xyz="0.125 0 0.25"/><mass value="2"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+  <collision><origin xyz="0 0 0.25"/><geometry><box size="0.25 0.125 0.5"/></geometry></collision>
+</link></robot>
+XML
+  cat >"$work/box.yaml" <<YAML
+schema: cguide-problem/1
+robot: {urdf: box.urdf}
+scene:
+  - {name: floor, halfspace: {normal: [0, 0, 1], offset_m: 0}}
+contact: {epsilon_m: 0.0625, friction: 0.5, sites: {box: $1}}
+sampling:
+  position: {box_m: [[-1, -1, 0], [1, 1, 1]]}
+  orientation: [{mean_rpy: [0, 0, 0], kappa: 50, weight: 1}]
+postures: {upright: {}}
+start: {posture: upright, root: {xyz_m: [0, 0, 0.03125], rpy: [0, 0, 0]}}
+goal: {posture: upright, root: {xyz_m: [0, 0, 0.03125], rpy: [0, 0, 0]}}
+YAML
+}
+
+section_boundary() {
+  box_on_edge "[[-0.125, -0.0625, 0], [-0.125, 0.0625, 0], [0.125, -0.0625, 0], [0.125, 0.0625, 0]]"
+  expect 4 stability "$work/box.yaml" --posture upright
+  says "undecided: boundary (rank 6)"
+  says "forces that balance it"
+  says "supporting wrench"
+  says_not "separating wrench"
+  expect 4 stability "$work/box.yaml" --posture upright --format json
+  says '"reason": "boundary (rank 6)"'
+  says '"rank": 6'
+  says '"separating_wrench": null'
+  says_not '"supporting_wrench": null'
+  says_not '"forces": []'
+  box_on_edge "[[0.125, 0, 0]]"
+  expect 4 stability "$work/box.yaml" --posture upright --format json
+  says '"reason": "boundary (rank 3)"'
+  says '"rank": 3'
+  says '"supporting_wrench": null'
+  says_not '"forces": []'
+}
+
 section_bad_input() {
   # A file name of any bytes is no reason to fail; what is not UTF-8 is replaced in the reports for programs.
   local odd=$work/$'odd\xff.json'

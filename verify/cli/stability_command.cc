@@ -73,6 +73,7 @@ struct Answer {
   numeric::StabilityRung rung = numeric::StabilityRung::kUndecided;
   std::vector<numeric::Contact> contacts;
   std::vector<numeric::WitnessForce> forces;  ///< a balance; indices into `contacts`
+  std::optional<int> rank;  ///< of the contacts' wrenches, where an exact stage ran
   Eigen::Vector3d com_W = Eigen::Vector3d::Zero();
 
   exact::Enclosure com_margin;
@@ -118,6 +119,7 @@ Answer Ask(const Question& question) {
   answer.rung = settled.rung;
   answer.contacts = std::move(settled.contacts);
   answer.forces = std::move(settled.forces);
+  if (settled.exact) answer.rank = settled.exact->rank;
   answer.com_W = ladder.com_W();
   AskMargins(ladder.Query(), &answer);
   // The distribution is over the contacts in doubles; a later rung may have found others.
@@ -169,6 +171,14 @@ std::string VerdictText(const Answer& answer) {
   }
   return "undecided: " + answer.reason;
 }
+
+/** A proved tie: forces balance, and any small push may end that. */
+bool IsBoundary(const Answer& answer) {
+  return answer.stability.verdict == Verdict::kUndecided && !answer.forces.empty();
+}
+
+/** A separating wrench, or one that supports the cone at a boundary of rank 6. */
+bool HasWrench(const Answer& answer) { return !answer.stability.separator.y.isZero(0); }
 
 std::string Vector(const Eigen::Vector3d& v) {
   return "[" + Short(v.x()) + " " + Short(v.y()) + " " + Short(v.z()) + "]";
@@ -251,10 +261,10 @@ void PrintText(const Question& question, const Answer& answer) {
               << Millimetres(contact.distance - contact.radius) << ", mu "
               << Short(contact.friction) << (contact.certain ? "" : ", perhaps not active") << '\n';
   }
-  if (answer.stability.verdict == Verdict::kHolds) {
-    PrintForces(answer);
-  } else if (answer.stability.verdict == Verdict::kFails) {
-    std::cout << "separating wrench about the centre of mass\n  [";
+  if (answer.stability.verdict == Verdict::kHolds || IsBoundary(answer)) PrintForces(answer);
+  if (answer.stability.verdict != Verdict::kHolds && HasWrench(answer)) {
+    std::cout << (IsBoundary(answer) ? "supporting" : "separating")
+              << " wrench about the centre of mass\n  [";
     for (int i = 0; i < 6; ++i)
       std::cout << (i ? " " : "") << Short(answer.stability.separator.y[i]);
     std::cout << "]\n";
@@ -279,7 +289,7 @@ Json ForcesJson(const Answer& answer) {
       const Eigen::Vector3d& f = answer.distribution->force_W[i];
       if (!f.isZero(0)) add(static_cast<int>(i), f);
     }
-  } else if (answer.stability.verdict == Verdict::kHolds) {
+  } else if (answer.stability.verdict != Verdict::kFails) {
     for (const numeric::WitnessForce& f : answer.forces) add(f.contact, f.weight * f.u_W);
   }
   return forces;
@@ -294,6 +304,8 @@ void PrintJson(const Question& question, const Answer& answer) {
                     : answer.stability.verdict == Verdict::kFails ? "unstable"
                                                                   : "undecided";
   json["stage"] = StageName(answer.rung);
+  json["reason"] = answer.reason.empty() ? Json(nullptr) : Json(answer.reason);
+  json["rank"] = answer.rank ? Json(*answer.rank) : Json(nullptr);
   json["com_m"] = ToJson(answer.com_W);
   json["com_margin_m"] = Number(answer.com_margin.lo);
   json["com_margin_enclosure_m"] = ToJson(answer.com_margin);
@@ -314,9 +326,11 @@ void PrintJson(const Question& question, const Answer& answer) {
   }
   json["forces"] = ForcesJson(answer);
   json["separating_wrench"] = nullptr;
-  if (answer.stability.verdict == Verdict::kFails) {
-    json["separating_wrench"] = Json::array();
-    for (double y : answer.stability.separator.y) json["separating_wrench"].push_back(y);
+  json["supporting_wrench"] = nullptr;
+  if (answer.stability.verdict != Verdict::kHolds && HasWrench(answer)) {
+    Json& wrench = json[IsBoundary(answer) ? "supporting_wrench" : "separating_wrench"];
+    wrench = Json::array();
+    for (double y : answer.stability.separator.y) wrench.push_back(y);
   }
   json["support_region_m"] = Json::array();
   json["support_region_gap_m"] = Number(answer.region.gap);
