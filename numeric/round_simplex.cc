@@ -184,6 +184,7 @@ class RoundSimplex {
     for (int k = 0; k < 6; ++k) {
       if (!TakeIn(k, base_[k].wrench, row_of, taken)) return false;
     }
+    base_spans_ = true;
     for (int k = 0; k < 6; ++k) current_[row_of[k]] = base_[k];
     basis_.Transform(v_, &x_);
     row_ = static_cast<int>(std::min_element(x_.begin(), x_.end()) - x_.begin());
@@ -195,6 +196,27 @@ class RoundSimplex {
   bool IsFeasible() const {
     for (int i = 0; i < 6; ++i) {
       if (i != row_ && x_[i] < 0) return false;
+    }
+    return true;
+  }
+
+  // Whether the forces in use span R^6. With a weight on each column of the basis they do, as a is
+  // a sum of theirs; else it takes an independent base, which doubles only say it is.
+  bool SpansAll() const {
+    bool all = true;
+    for (int i = 0; i < 6; ++i) all = all && (i == row_ || x_[i] > 0);
+    if (all || base_spans_) return true;
+    IntegerBasis basis;
+    basis.Reset();
+    Integer6 alpha;
+    bool taken[6] = {};
+    for (const Column& b : base_) {
+      basis.Transform(b.wrench, &alpha);
+      int row = 0;
+      while (row < 6 && (taken[row] || alpha[row] == 0)) ++row;
+      if (row == 6) return false;
+      basis.Pivot(row, alpha, nullptr);
+      taken[row] = true;
     }
     return true;
   }
@@ -211,7 +233,7 @@ class RoundSimplex {
     const bool feasible = IsFeasible();
     const int sign = sgn(x_[row_]);
     if (sign > 0) {
-      if (!feasible) return Step::kRestart;
+      if (!feasible || !SpansAll()) return Step::kRestart;
       Hold(nullptr, 0);
       return Step::kDone;
     }
@@ -363,6 +385,7 @@ class RoundSimplex {
       if (!ChooseEntering(&entering)) return false;
       const int row = ChooseLeaving();
       if (row < 0) {
+        if (!SpansAll()) return false;
         GoAlong(entering);
         return true;
       }
@@ -389,7 +412,8 @@ class RoundSimplex {
   Column current_[6];  // of the basis, but for row_
   std::vector<Column> waiting_;
   IntegerBasis basis_;
-  int row_ = -1;  // of the direction
+  bool base_spans_ = false;  // proved
+  int row_ = -1;             // of the direction
   Integer6 x_, alpha_;
   mpz_class sum_;
   Integer3 y_f_, y_m_;

@@ -90,18 +90,24 @@ struct SettledStability {
   StabilityAnswer answer;
   StabilityStage stage = StabilityStage::kUndecided;
   std::string reason;  ///< one clause for the user where undecided, else empty
-  /** The exact twin's verdict on the stored contacts and its proof, where it was asked; its contact
-   indices are into the query. `answer` holds the same rounded to doubles. */
+  /** The exact verdict on the stored contacts and its proof, where the exact stage was asked; its
+   contact indices are into the query, and `sides` is 0 where no pyramids were needed. `answer`
+   holds the same rounded to doubles. */
   std::optional<exact::StabilityResult> exact;
 };
 
-/** TryStability, else exact::DecideStability on the stored contacts.
+/** TryStability, else the exact stage on the stored contacts: over integers by forces along the
+ weight and by the simplex from where doubles left it, against the round cones themselves; what that
+ leaves open by exact::DecideStability. Where the twin decides the verdict is the twin's, with a
+ proof that the same checkers accept.
 
  An exact verdict is about the stored numbers, which are not the real ones: it counts where they are
  exact (no contact error, no CoM error, point sites), and otherwise only if its forces or its
  separating wrench, rounded to doubles, pass the same certificates as TryStability's, which carry
  the stated errors. Else the answer is kUndecided with the reason: a boundary, a rank below 6, or a
- tie closer than the errors. The exact stage takes milliseconds. */
+ tie closer than the errors. The exact stage takes tens of microseconds, beside a tie on slopes and
+ walls a few hundred, and milliseconds where the twin is asked: ranks below 6 and numbers out of
+ range. */
 SettledStability Stability(const StabilityQuery& query, StabilityWorkspace* workspace);
 
 /** Bound on |n_W - the real normal| of a contact; infinite where its errors allow any normal. */

@@ -1,6 +1,5 @@
 #include "tests/benchmark/exact_stage_section.h"
 
-#include <cstdlib>
 #include <optional>
 #include <string>
 #include <vector>
@@ -69,7 +68,7 @@ Times TimeFlat(bool fine, std::size_t wanted) {
     for (int k = 0; k < 4; ++k) {
       const testing::FlatTie tie =
           fine ? testing::MakeFineTie(rng, stance) : testing::MakeFlatTie(rng, stance);
-      Ask(QueryOf(stance, tie), 50, &workspace, &times);
+      Ask(QueryOf(stance, tie), 100, &workspace, &times);
     }
   }
   return times;
@@ -97,7 +96,7 @@ Times TimeStances(std::size_t wanted) {
       if (verdict == Verdict::kUndecided || ended) break;
       (verdict == Verdict::kHolds ? stable : unstable) = query.com_W;
     }
-    Ask(query, std::getenv("S") ? 1000000 : 50, &workspace, &times);
+    Ask(query, 100, &workspace, &times);
   }
   return times;
 }
@@ -108,15 +107,12 @@ void ReportStabilityExactStage(std::FILE* out) {
   std::fprintf(
       out,
       "\nExact stage of Stability on what doubles leave open; us of CPU time, and of the "
-      "exact twin on one in 50\n\n"
+      "exact twin on one in 100\n\n"
       "| near ties | asked | settled | on the boundary | open | median | 99 %% | 99.9 %% | "
       "largest | twin: median | 99 %% |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
-  Print(out, "one plane, few bits",
-        TimeFlat(false, std::getenv("M") ? std::atoi(std::getenv("M")) : 10000));
-  Print(out, "one plane, all bits",
-        TimeFlat(true, std::getenv("M") ? std::atoi(std::getenv("M")) : 10000));
-  Print(out, "slopes and walls",
-        TimeStances(std::getenv("N") ? std::atoi(std::getenv("N")) : 3000));
+  Print(out, "one plane, few bits", TimeFlat(false, 10000));
+  Print(out, "one plane, all bits", TimeFlat(true, 10000));
+  Print(out, "slopes and walls", TimeStances(3000));
 }
 
 }  // namespace cguide::benchmark_tools

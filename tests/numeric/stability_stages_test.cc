@@ -126,6 +126,48 @@ TEST_CASE("the stages agree with the exact twin, and all of them are used") {
   CHECK(count[static_cast<int>(StabilityStage::kUndecided)] >= 5);
 }
 
+TEST_CASE("numbers of any size get an answer, and what is not finite a reason") {
+  StabilityWorkspace workspace;
+  const auto ask = [&](auto&& change) {
+    Stance stance = ExactFoot();
+    stance.com[0] = 0.125;
+    StabilityQuery query = stance.Query();
+    change(stance, query);
+    query.contacts = stance.contacts;
+    return Stability(query, &workspace);
+  };
+  for (const double mass : {1e-300, 5e-324, 1e300}) {
+    const SettledStability tie = ask([&](Stance&, StabilityQuery& query) { query.mass = mass; });
+    CHECK(tie.reason == "boundary (rank 6)");
+  }
+  for (const double g : {5e-324, 1e-300, 1e300}) {
+    const SettledStability tie = ask([&](Stance&, StabilityQuery& query) {
+      query.gravity_W = {0, 0, -g};
+    });
+    CHECK(tie.reason == "boundary (rank 6)");
+  }
+  // Beyond what the integers hold together the exact twin decides.
+  const SettledStability inside =
+      ask([](Stance& stance, StabilityQuery&) { stance.contacts[0].x_W[2] = -1e-300; });
+  REQUIRE(inside.exact);
+  CHECK(inside.exact->sides != 0);
+  CHECK(inside.exact->verdict == Verdict::kUndecided);
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    const SettledStability answers[] = {
+        ask([&](Stance&, StabilityQuery& query) { query.mass = bad; }),
+        ask([&](Stance&, StabilityQuery& query) { query.gravity_W[1] = bad; }),
+        ask([&](Stance&, StabilityQuery& query) { query.com_W[2] = bad; }),
+        ask([&](Stance& stance, StabilityQuery&) { stance.contacts[1].x_W[0] = bad; }),
+        ask([&](Stance& stance, StabilityQuery&) { stance.contacts[2].n_W[0] = bad; }),
+        ask([&](Stance& stance, StabilityQuery&) { stance.contacts[2].friction = bad; })};
+    for (const SettledStability& answer : answers) {
+      CHECK(answer.answer.verdict == Verdict::kUndecided);
+      CHECK_FALSE(answer.exact);
+      CHECK_FALSE(answer.reason.empty());
+    }
+  }
+}
+
 TEST_CASE("uncertain contacts: settled only where they make no difference") {
   StabilityWorkspace workspace;
   Stance stance = ExactFoot();
