@@ -58,8 +58,8 @@ class SupportFinder {
     Classify();
     if (support_.place != Support::Place::kInside && zero_ != nullptr) {
       support_.weights.clear();
+      if (support_.place == Support::Place::kOutside) SetEdge(*zero_, *right_);
       StandOn(*zero_);
-      SetEdge(*zero_, *right_);
     }
     if (support_.place == Support::Place::kOutside) FindEdge();
     return std::move(support_);

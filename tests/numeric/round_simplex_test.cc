@@ -81,7 +81,7 @@ TEST_CASE("The verdicts are monotone across the boundary, unit of rounding by un
     int last = 2;
     bool changed = false;
     for (int k = -40; k <= 40; ++k) {
-      query->com_W[0] = x + std::copysign(k * 0x1p-54, way[0] * k) * std::max(1.0, std::abs(x));
+      query->com_W[0] = x + std::copysign(k * k * 0x1p-52, way[0] * k) * std::max(1.0, std::abs(x));
       const SettledStability settled = Stability(*query, &workspace);
       const Verdict verdict = settled.exact ? settled.exact->verdict : settled.answer.verdict;
       const int rank = verdict == Verdict::kHolds ? 2 : verdict == Verdict::kFails ? 0 : 1;
