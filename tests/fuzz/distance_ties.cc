@@ -182,7 +182,7 @@ std::string TiesOfDistance(TieRng& rng, long every, Tally* tally) {
     Pair pair = TouchingPair(rng);
     if (!Step(rng, &pair)) continue;
     Rational squared;
-    std::string wrong = CheckAnswer(pair, tally->checked * every <= tally->cases, &squared, tally);
+    std::string wrong = CheckAnswer(pair, SlowCheckIsDue(*tally, every), &squared, tally);
     if (wrong.empty()) wrong = CheckThreshold(pair, 0, squared, tally);
     if (!wrong.empty()) return wrong;
     // Apart by a distance that is a double or is not; thresholds around it.
@@ -208,7 +208,7 @@ std::string TiesOfClearance(TieRng& rng, long every, Tally* tally) {
     const auto exact = numeric::SquaredConvexDistance(pair.a, pair.b).squared;
     const std::string wrong = CheckEnclosure(pair, exact, tally);
     if (!wrong.empty()) return wrong;
-    if (tally->checked * every >= tally->cases) continue;
+    if (!SlowCheckIsDue(*tally, every)) continue;
     ++tally->checked;
     if (exact::SquaredConvexDistanceByQp(Lifted(pair.a), Lifted(pair.b)).squared != exact) {
       return "quadratic programming finds another distance";

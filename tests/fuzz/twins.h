@@ -33,6 +33,12 @@ std::string CheckDistance(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckTriangles(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckClearance(ByteStream& in, bool thorough, Tally* tally);
 
+/** Whether the slow checks of a near tie are to be made: of one case in `every`, as the tally stands,
+ or of all where `every` is 1. */
+inline bool SlowCheckIsDue(const Tally& tally, long every) {
+  return every <= 1 || tally.checked * every <= tally.cases;
+}
+
 /** Makes and checks one family of near ties: a few dozen about one stance or pair of bodies, each
  within 2^-30 of a boundary of the predicate relative to the size of its numbers, or exactly on it.
  That it is so follows from the making and is checked; what is not does not count as a case. One
