@@ -200,6 +200,7 @@ std::string TiesOfDistance(TieRng& rng, long every, Tally* tally) {
 }
 
 std::string TiesOfClearance(TieRng& rng, long every, Tally* tally) {
+  if (Below(rng, 2) == 0) return TiesOfPlacedClearance(rng, tally);
   for (int k = 0; k < 16; ++k) {
     Pair pair = TouchingPair(rng);
     const std::optional<double> step = Step(rng, &pair);
