@@ -156,9 +156,8 @@ numeric::Convex View(const Points& points) {
 
 // Doubles prove the hulls apart or overlapping, or leave the pair to the exact comparison.
 std::string CheckEnclosure(const Pair& pair, const Rational& squared, Tally* tally) {
-  numeric::StageCounts counts;
   const numeric::DirectedClearance clearance =
-      numeric::ConvexClearance(View(pair.a), View(pair.b), 100, &counts);
+      numeric::ConvexClearance(View(pair.a), View(pair.b), 100);
   const bool apart = !clearance.overlap && clearance.lo > 0;
   ++tally->cases;
   ++(apart || clearance.overlap ? tally->fast : tally->exact);

@@ -55,8 +55,7 @@ void RequireOursRight(const ConvexPair& pair, const Rational& squared) {
     p.SetHull(pair.a);
     q.SetHull(pair.b);
   }
-  StageCounts counts;
-  const DirectedClearance clearance = ConvexClearance(p.set, q.set, INFINITY, &counts);
+  const DirectedClearance clearance = ConvexClearance(p.set, q.set, INFINITY);
   REQUIRE(Encloses(clearance.lo, clearance.hi, squared));
   if (clearance.overlap) REQUIRE(squared == 0);
   SeparationHint hint;
