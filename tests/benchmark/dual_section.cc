@@ -24,6 +24,8 @@ using testing::WrenchSet;
 
 constexpr int kSets = 25;      // a cell
 constexpr int kExactSets = 2;  // of them, for the slowest: PPL and cddlib in rationals
+// cddlib in rationals takes seconds for more generators, and minutes for those of eight patches.
+constexpr std::size_t kMostForCddGmp = 64;
 // Ours: the median of so many calls, floats and certified in turn, so that a change of the
 // machine's speed is both's; Qhull likewise, the other peers are called once.
 constexpr int kRepeats = 11;
@@ -185,7 +187,7 @@ void MeasureExact(const WrenchSet& set, const Lists& lists, Cell* cell) {
   cell->ppl_ratio.push_back(cell->ppl.back() / cell->normals.back());
   cell->wrong += !SameFacets(lists.normals, ppl);
   ++cell->checked;
-  if (CddGmp() == nullptr) return;
+  if (CddGmp() == nullptr || integers.size() > kMostForCddGmp) return;
   peers::CddGmpFacets cdd;
   const double time = MicrosecondsOf(1, [&] { cdd = CddGmp()(integers, 6); });
   if (cdd.failed) return;
