@@ -257,15 +257,21 @@ void PrintMedian(std::FILE* out, const std::vector<double>& x) {
   }
 }
 
+std::string MedianText(const std::vector<double>& x) {
+  char text[32] = "-";
+  if (!x.empty()) std::snprintf(text, sizeof text, "%.0f", Median(x));
+  return text;
+}
+
 void PrintCell(std::FILE* out, const char* name, int sides, int patches, const Cell& cell) {
   std::fprintf(out,
-               "%-7s %5d %7d %6.0f %6.0f %6.0f | %7.0f %7.0f %7.0f | %9.0f %7.0f %10.0f %10.0f | "
+               "%-7s %5d %7d %6.0f %6.0f %6.0f | %7.0f %7.0f %7.0f | %9.0f %7.0f %10.0f %10s | "
                "%d/%d %d/%d(%d) %d/%d |",
                name, sides, patches, Median(cell.facets), Median(cell.float_facets),
                Median(cell.cdd_facets), Median(cell.flt), Median(cell.certified),
                Median(cell.normals), Median(cell.cdd), Median(cell.qhull), Median(cell.ppl),
-               Median(cell.cdd_gmp), kSets - cell.float_differs, kSets, kSets - cell.cdd_differs,
-               kSets, cell.cdd_failed, cell.wrong, cell.checked);
+               MedianText(cell.cdd_gmp).c_str(), kSets - cell.float_differs, kSets,
+               kSets - cell.cdd_differs, kSets, cell.cdd_failed, cell.wrong, cell.checked);
   PrintMedian(out, cell.certified_ratio);
   PrintMedian(out, cell.certified_ratio_right);
   PrintMedian(out, cell.float_per_facet);
