@@ -1,15 +1,12 @@
 #include <algorithm>
 
 #include "cguide/numeric/clearance_internal.h"
-#include "cguide/numeric/fcl_distance_internal.h"
 #include "cguide/numeric/gjk_internal.h"
 
 namespace cguide::numeric {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kWide = 1e-9;  // Enclosures wider than this ask FCL for a second opinion (m).
 
 // Raises lo where the direction is better than the best so far.
 void TryDirection(const Convex& a, const Convex& b, const Vector3d& n, DirectedClearance* result) {
@@ -29,18 +26,6 @@ void TryPoints(const Convex& a, const Convex& b, const Vector3d& p, const Vector
     result->a_W = p;
     result->b_W = q;
   }
-}
-
-// FCL's points are pulled into the sets before they count.
-void AskFcl(const Convex& a, const Convex& b, DirectedClearance* result, StageCounts* counts) {
-  ++counts->library;
-  const auto points = FclNearestPoints(a, b);
-  if (!points) return;
-  const Vector3d d = points->a - points->b;
-  const double length = d.norm();
-  if (length > 0) TryDirection(a, b, d / length, result);
-  Vector3d p = points->a, q = points->b;
-  if (ClampInto(a, 0, &p) && ClampInto(b, 0, &q)) TryPoints(a, b, p, q, result);
 }
 
 // Penetration depth along the axes at hand, an estimate from above.
@@ -68,8 +53,7 @@ void SetOverlap(DirectedClearance* result) {
   result->lo = result->hi = 0;
 }
 
-DirectedClearance Overlapping(const Convex& a, const Convex& b, const GjkResult& gjk,
-                              StageCounts* counts) {
+DirectedClearance Overlapping(const Convex& a, const Convex& b, const GjkResult& gjk) {
   DirectedClearance result;
   const double error = a.error + b.error;
   result.a_W = a.c + gjk.a;
@@ -86,7 +70,6 @@ DirectedClearance Overlapping(const Convex& a, const Convex& b, const GjkResult&
   result.lo = 0;
   result.hi = std::max(0.0, bound) + 2 * error;
   result.depth = 0;
-  if (result.hi > kWide) AskFcl(a, b, &result, counts);
   return result;
 }
 
@@ -114,8 +97,7 @@ DirectedClearance Nothing() {
 
 }  // namespace
 
-DirectedClearance ConvexClearance(const Convex& a, const Convex& b, double cutoff,
-                                  StageCounts* counts) {
+DirectedClearance ConvexClearance(const Convex& a, const Convex& b, double cutoff) {
   const double error = a.error + b.error;
   const Vector3d D = a.c - b.c;
   DirectedClearance result;
@@ -130,7 +112,7 @@ DirectedClearance ConvexClearance(const Convex& a, const Convex& b, double cutof
   GjkResult gjk;
   Gjk(a, b, D, INFINITY, &gjk);
   const double length = gjk.v.norm();
-  if (gjk.overlap || length - error <= a.radius + b.radius) return Overlapping(a, b, gjk, counts);
+  if (gjk.overlap || length - error <= a.radius + b.radius) return Overlapping(a, b, gjk);
   const Vector3d n = gjk.v / length;
   TryPoints(a, b, a.c + gjk.a - a.radius * n, b.c + gjk.b + b.radius * n, &result);
   TryDirection(a, b, n, &result);
@@ -147,7 +129,6 @@ DirectedClearance ConvexClearance(const Convex& a, const Convex& b, double cutof
     TryDirection(a, b, HintDirection(a, b, {static_cast<signed char>(axis.code), Vector3d::Zero()}),
                  &result);
   }
-  if (result.hi - result.lo > kWide) AskFcl(a, b, &result, counts);
   return result;
 }
 
@@ -167,17 +148,15 @@ DirectedClearance HalfspaceClearance(const Convex& shape, const ObstaclePiece& p
   return result;
 }
 
-DirectedClearance MeshClearance(const Convex& shape, const Mesh& mesh, double cutoff,
-                                StageCounts* counts) {
+DirectedClearance MeshClearance(const Convex& shape, const Mesh& mesh, double cutoff) {
   DirectedClearance all = Nothing();
   all.lo = cutoff;
   const double slack = shape.reach + shape.error;
   const auto radius = [&] { return all.overlap ? -INFINITY : slack + std::min(cutoff, all.hi); };
   VisitByDistance(mesh, shape.c, radius, [&](int t) {
     std::array<Vector3d, 3> corners;
-    Absorb(
-        ConvexClearance(shape, TriangleConvex(mesh, t, &corners), std::min(cutoff, all.hi), counts),
-        &all);
+    Absorb(ConvexClearance(shape, TriangleConvex(mesh, t, &corners), std::min(cutoff, all.hi)),
+           &all);
   });
   if (all.overlap || !mesh.solid) return all;
   const Vector3d x = InnerPoint(shape);
@@ -203,8 +182,7 @@ DirectedClearance BodyClearance(const World& world, const Pair& pair, double cut
     const double reach = std::min(cutoff, all.hi);
     if (pair.self) {
       for (int t = g.body_begin[pair.other]; t < g.body_begin[pair.other + 1]; ++t) {
-        Absorb(ConvexClearance(shape, scratch.shapes[t], std::min(cutoff, all.hi), &scratch.counts),
-               &all);
+        Absorb(ConvexClearance(shape, scratch.shapes[t], std::min(cutoff, all.hi)), &all);
       }
       continue;
     }
@@ -217,9 +195,9 @@ DirectedClearance BodyClearance(const World& world, const Pair& pair, double cut
         far.lo = reach;
         Absorb(far, &all);
       } else if (piece.kind == PieceKind::kMesh) {
-        Absorb(MeshClearance(shape, *piece.mesh, reach, &scratch.counts), &all);
+        Absorb(MeshClearance(shape, *piece.mesh, reach), &all);
       } else {
-        Absorb(ConvexClearance(shape, piece.convex, reach, &scratch.counts), &all);
+        Absorb(ConvexClearance(shape, piece.convex, reach), &all);
       }
     }
   }

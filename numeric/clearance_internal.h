@@ -17,13 +17,11 @@ struct DirectedClearance : Clearance {
  the rounding held in error_A + error_B. lo: Gap along the best of a few directions minus the same
  errors; by weak duality every direction is a valid bound, so that a wrong proposal only widens the
  result. */
-DirectedClearance ConvexClearance(const Convex& a, const Convex& b, double cutoff,
-                                  StageCounts* counts);
+DirectedClearance ConvexClearance(const Convex& a, const Convex& b, double cutoff);
 
 DirectedClearance HalfspaceClearance(const Convex& shape, const ObstaclePiece& piece);
 
-DirectedClearance MeshClearance(const Convex& shape, const Mesh& mesh, double cutoff,
-                                StageCounts* counts);
+DirectedClearance MeshClearance(const Convex& shape, const Mesh& mesh, double cutoff);
 
 /** Clearance of a body and an object, or of two bodies. */
 DirectedClearance BodyClearance(const World& world, const Pair& pair, double cutoff,

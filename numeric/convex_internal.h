@@ -35,7 +35,7 @@ struct Convex {
   const Eigen::Vector3d* points = nullptr;  ///< relative to c, in the axes R
   int num_points = 0;
   const PointLanes* lanes = nullptr;          ///< the same points for fast scans, or null
-  const std::array<int, 3>* faces = nullptr;  ///< only handed on to FCL
+  const std::array<int, 3>* faces = nullptr;  ///< triangles of `points`
   int num_faces = 0;
   CoreKind kind = CoreKind::kBox;
 };

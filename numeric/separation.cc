@@ -1,6 +1,5 @@
 #include <algorithm>
 
-#include "cguide/numeric/fcl_distance_internal.h"
 #include "cguide/numeric/gjk_internal.h"
 #include "cguide/numeric/separation_internal.h"
 
@@ -32,7 +31,7 @@ bool SeparatesByFace(const Convex& a, const Convex& b, double needed, Separation
   return false;
 }
 
-// The directions of our iteration, then of FCL where ours is no evidence.
+// The direction of our iteration, then proofs of a common point.
 Verdict DecideByDistance(const Convex& a, const Convex& b, double skin, const Vector3d& guess,
                          SeparationHint* hint, StageCounts* counts) {
   const double error = a.error + b.error, radii = a.radius + b.radius;
@@ -55,12 +54,6 @@ Verdict DecideByDistance(const Convex& a, const Convex& b, double skin, const Ve
       ProveOctahedron(a, b, error + skin)) {
     ++counts->meets;
     return Verdict::kFails;
-  }
-  const auto direction = FclDirection(a, b);
-  if (direction && Certifies(a, b, *direction, error - skin)) {
-    Remember(a, *direction, hint);
-    ++counts->library;
-    return Verdict::kHolds;
   }
   ++counts->undecided;
   return Verdict::kUndecided;

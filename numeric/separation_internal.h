@@ -14,7 +14,6 @@ struct StageCounts {
   long cached = 0;   ///< the direction that separated the pair last time
   long boxes = 0;    ///< an axis of the separating axis test
   long gjk = 0;      ///< a direction of our iteration
-  long library = 0;  ///< a direction of FCL
   long meets = 0;    ///< proven to meet
   long undecided = 0;
 };

@@ -147,7 +147,6 @@ long EnclosureRow(std::FILE* out, const char* name, const std::vector<ConvexPair
   std::vector<double> times[5], ratios[4];
   double width = 0;
   long wrong = 0;
-  numeric::StageCounts counts;
   for (const ConvexPair& pair : pairs) {
     const EnclosurePair e(pair);
     const Rational truth = SquaredTruth(pair);
@@ -155,11 +154,9 @@ long EnclosureRow(std::FILE* out, const char* name, const std::vector<ConvexPair
     numeric::DistanceBounds bounds;
     constexpr int kRepeats = 50;
     const double us[5] = {
-        MicrosecondsOf(kRepeats,
-                       [&] {
-                         placed = numeric::ConvexClearance(e.shape[0].set, e.shape[1].set, INFINITY,
-                                                           &counts);
-                       }),
+        MicrosecondsOf(
+            kRepeats,
+            [&] { placed = numeric::ConvexClearance(e.shape[0].set, e.shape[1].set, INFINITY); }),
         MicrosecondsOf(kRepeats,
                        [&] { bounds = numeric::BoundConvexDistance(e.points[0], e.points[1]); }),
         MicrosecondsOf(kRepeats, [&] { sink = peers::FclDistance(e.fcl[0], e.fcl[1], 1e-12); }),

@@ -10,6 +10,7 @@
 #include "cguide/numeric/double_description.h"
 #include "tests/benchmark/timing.h"
 #include "tests/cases/wrench_sets.h"
+#include "tests/peers/cdd_gmp_peer.h"
 #include "tests/peers/cdd_peer.h"
 #include "tests/peers/ppl_peer.h"
 #include "tests/peers/qhull_peer.h"
@@ -21,16 +22,18 @@ using numeric::Vector6d;
 using testing::Storage;
 using testing::WrenchSet;
 
-constexpr int kSets = 25;    // a cell
-constexpr int kPplSets = 2;  // of them, for the slowest
+constexpr int kSets = 25;      // a cell
+constexpr int kExactSets = 2;  // of them, for the slowest: PPL and cddlib in rationals
+// cddlib in rationals takes seconds for more generators, and minutes for those of eight patches.
+constexpr std::size_t kMostForCddGmp = 64;
 // Ours: the median of so many calls, floats and certified in turn, so that a change of the
 // machine's speed is both's; Qhull likewise, the other peers are called once.
 constexpr int kRepeats = 11;
 
 /** Times in microseconds, one a set; NaN (nothing) where a peer does not apply. */
 struct Cell {
-  std::vector<double> flt, certified, normals, cdd, qhull, ppl;
-  std::vector<double> certified_ratio, cdd_ratio, qhull_ratio, ppl_ratio;
+  std::vector<double> flt, certified, normals, cdd, qhull, ppl, cdd_gmp;
+  std::vector<double> certified_ratio, cdd_ratio, qhull_ratio, ppl_ratio, cdd_gmp_ratio;
   std::vector<double> facets, float_facets, cdd_facets;
   std::vector<double> float_per_facet, certified_per_facet;  // of lists that are not empty
   // Only of stances where the other list has the same facets.
@@ -55,7 +58,8 @@ std::vector<mpz_class> IntegerRow(const AppliedForce& g) {
   return result;
 }
 
-bool SameFacets(const exact::HalfspaceCone& ours, const peers::PplFacets& theirs) {
+template <typename Facets>
+bool SameFacets(const exact::HalfspaceCone& ours, const Facets& theirs) {
   if (ours.equations.size() != theirs.equations.size()) return false;
   std::vector<std::vector<mpz_class>> a, b = theirs.facets;
   for (const VectorXq& h : ours.facets) {
@@ -169,7 +173,13 @@ void MeasureQhull(const Lists& lists, Cell* cell) {
   cell->qhull_ratio.push_back(cell->qhull.back() / cell->flt.back());
 }
 
-void MeasurePpl(const WrenchSet& set, const Lists& lists, Cell* cell) {
+peers::CddGmpFunction CddGmp() {
+  static const peers::CddGmpFunction function = peers::LoadCddGmp(CGUIDE_CDD_GMP_MODULE);
+  return function;
+}
+
+// The exact peers.
+void MeasureExact(const WrenchSet& set, const Lists& lists, Cell* cell) {
   std::vector<std::vector<mpz_class>> integers;
   for (const AppliedForce& g : set.generators) integers.push_back(IntegerRow(g));
   peers::PplFacets ppl;
@@ -177,9 +187,17 @@ void MeasurePpl(const WrenchSet& set, const Lists& lists, Cell* cell) {
   cell->ppl_ratio.push_back(cell->ppl.back() / cell->normals.back());
   cell->wrong += !SameFacets(lists.normals, ppl);
   ++cell->checked;
+  if (CddGmp() == nullptr || integers.size() > kMostForCddGmp) return;
+  peers::CddGmpFacets cdd;
+  const double time = MicrosecondsOf(1, [&] { cdd = CddGmp()(integers, 6); });
+  if (cdd.failed) return;
+  cell->cdd_gmp.push_back(time);
+  cell->cdd_gmp_ratio.push_back(time / cell->normals.back());
+  cell->wrong += !SameFacets(lists.normals, cdd);
+  ++cell->checked;
 }
 
-void MeasureSet(const WrenchSet& set, bool with_ppl, Cell* cell) {
+void MeasureSet(const WrenchSet& set, bool with_exact, Cell* cell) {
   Lists lists;
   for (const AppliedForce& g : set.generators) {
     lists.wrenches.emplace_back();
@@ -188,7 +206,7 @@ void MeasureSet(const WrenchSet& set, bool with_ppl, Cell* cell) {
   MeasureOurs(set, &lists, cell);
   MeasureCdd(lists, cell);
   MeasureQhull(lists, cell);
-  if (with_ppl) MeasurePpl(set, lists, cell);
+  if (with_exact) MeasureExact(set, lists, cell);
 }
 
 void PrintRatio(std::FILE* out, const char* name, const std::vector<double>& x) {
@@ -202,7 +220,7 @@ void PrintRatio(std::FILE* out, const char* name, const std::vector<double>& x) 
 /** Over a storage's cells: their medians, and those of the restricted ratios where there are any.
  */
 struct Totals {
-  std::vector<double> certified, certified_per_facet, cdd, qhull, ppl;
+  std::vector<double> certified, certified_per_facet, cdd, qhull, ppl, cdd_gmp;
   std::vector<double> certified_right, cdd_right, cdd_certified_right;
   int stances = 0, cdd_differs = 0, cdd_failed = 0, float_differs = 0;
 };
@@ -220,6 +238,7 @@ void AddCell(const Cell& cell, Totals* totals) {
   AddMedian(cell.cdd_ratio, &totals->cdd);
   AddMedian(cell.qhull_ratio, &totals->qhull);
   AddMedian(cell.ppl_ratio, &totals->ppl);
+  AddMedian(cell.cdd_gmp_ratio, &totals->cdd_gmp);
   AddMedian(cell.certified_ratio_right, &totals->certified_right);
   AddMedian(cell.cdd_ratio_right, &totals->cdd_right);
   AddMedian(cell.cdd_certified_right, &totals->cdd_certified_right);
@@ -238,15 +257,21 @@ void PrintMedian(std::FILE* out, const std::vector<double>& x) {
   }
 }
 
+std::string MedianText(const std::vector<double>& x) {
+  char text[32] = "-";
+  if (!x.empty()) std::snprintf(text, sizeof text, "%.0f", Median(x));
+  return text;
+}
+
 void PrintCell(std::FILE* out, const char* name, int sides, int patches, const Cell& cell) {
   std::fprintf(out,
-               "%-7s %5d %7d %6.0f %6.0f %6.0f | %7.0f %7.0f %7.0f | %9.0f %7.0f %10.0f | "
+               "%-7s %5d %7d %6.0f %6.0f %6.0f | %7.0f %7.0f %7.0f | %9.0f %7.0f %10.0f %10s | "
                "%d/%d %d/%d(%d) %d/%d |",
                name, sides, patches, Median(cell.facets), Median(cell.float_facets),
                Median(cell.cdd_facets), Median(cell.flt), Median(cell.certified),
                Median(cell.normals), Median(cell.cdd), Median(cell.qhull), Median(cell.ppl),
-               kSets - cell.float_differs, kSets, kSets - cell.cdd_differs, kSets, cell.cdd_failed,
-               cell.wrong, cell.checked);
+               MedianText(cell.cdd_gmp).c_str(), kSets - cell.float_differs, kSets,
+               kSets - cell.cdd_differs, kSets, cell.cdd_failed, cell.wrong, cell.checked);
   PrintMedian(out, cell.certified_ratio);
   PrintMedian(out, cell.certified_ratio_right);
   PrintMedian(out, cell.float_per_facet);
@@ -272,6 +297,7 @@ void PrintTotals(std::FILE* out, const char* name, const Totals& totals) {
   PrintRatio(out, "cdd / certified, where cdd is right", totals.cdd_certified_right);
   PrintRatio(out, "qhull / float", totals.qhull);
   PrintRatio(out, "ppl / (certified + exact normals)", totals.ppl);
+  PrintRatio(out, "cdd gmp / (the same)", totals.cdd_gmp);
 }
 
 }  // namespace
@@ -287,9 +313,10 @@ void ReportDual(std::FILE* out, const std::string& only) {
       "the float list, of cdd's): its time buys fewer facets, and the times a facet compare like\n"
       "with like. A dash: no stance of the cell has such a list.\n"
       "cdd's times are of the calls that ended without an error, be the list right or not.\n"
-      "%-7s %5s %7s %6s %6s %6s | %7s %7s %7s | %9s %7s %10s | %s | %s\n",
+      "%-7s %5s %7s %6s %6s %6s | %7s %7s %7s | %9s %7s %10s %10s | %s | %s\n",
       kSets, "storage", "sides", "patches", "facets", "float", "cdd", "float", "certif.",
-      "+normals", "cdd", "qhull", "ppl", "float right, cdd right (failed), ours wrong/checked",
+      "+normals", "cdd", "qhull", "ppl", "cdd gmp",
+      "float right, cdd right (failed), ours wrong/checked",
       "certified/float, where float is right, us a facet: float, certified, cdd/float, where cdd "
       "is right, cdd/certified there");
   for (const Storage storage : {Storage::kSnapped, Storage::kRounded}) {
@@ -303,7 +330,7 @@ void ReportDual(std::FILE* out, const std::string& only) {
         numeric::Rng rng(1000 + 10 * patches + sides);
         Cell cell;
         for (int i = 0; i < kSets; ++i) {
-          MeasureSet(RandomStanceSet(patches, sides, storage, rng), i < kPplSets, &cell);
+          MeasureSet(RandomStanceSet(patches, sides, storage, rng), i < kExactSets, &cell);
         }
         PrintCell(out, name, sides, patches, cell);
         AddCell(cell, &totals);

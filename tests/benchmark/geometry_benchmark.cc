@@ -5,7 +5,6 @@
 
 #include <random>
 
-#include "cguide/numeric/fcl_distance_internal.h"
 #include "cguide/numeric/geometry_internal.h"
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/numeric/sampling.h"
@@ -86,7 +85,7 @@ void PlaceAndTestFree(benchmark::State& state) {
   state.counters["cached"] = static_cast<double>(c.cached) / n;
   state.counters["boxes"] = static_cast<double>(c.boxes) / n;
   state.counters["gjk"] = static_cast<double>(c.gjk) / n;
-  state.counters["library"] = static_cast<double>(c.library) / n;
+  state.counters["undecided"] = static_cast<double>(c.undecided) / n;
 }
 BENCHMARK(PlaceAndTestFree)->Arg(0)->Arg(1);
 
@@ -139,22 +138,6 @@ void EnclosuresOfAllPairs(benchmark::State& state) {
   state.counters["pairs"] = static_cast<double>(pairs.size());
 }
 BENCHMARK(EnclosuresOfAllPairs);
-
-// FCL on the shapes of the self pairs, objects built anew as our second opinion does.
-void FclOnSelfPairs(benchmark::State& state) {
-  Bench& b = Get(true);
-  const Geometry& g = b.world.geometry();
-  std::size_t i = 0;
-  for (auto _ : state) {
-    Place(b.world, b.free[i++ % b.free.size()], &b.workspace);
-    for (const auto& [body, other] : g.self_pairs) {
-      benchmark::DoNotOptimize(FclNearestPoints(b.workspace.scratch->shapes[g.body_begin[body]],
-                                                b.workspace.scratch->shapes[g.body_begin[other]]));
-    }
-  }
-  state.counters["pairs"] = static_cast<double>(g.self_pairs.size());
-}
-BENCHMARK(FclOnSelfPairs);
 
 }  // namespace
 }  // namespace cguide::numeric

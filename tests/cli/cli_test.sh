@@ -24,6 +24,23 @@ section_usage() {
   expect 2 plan "$a1" -o "$work/g.json" --time-limit -1
   expect 2 audit "$work/g.json" --dense 0
   expect 2 stability
+  # What is not a number, or not a finite one, is outside of every range.
+  local number
+  for number in nan NaN -nan inf -inf 1e400 "" x; do
+    expect 2 plan "$a1" -o "$work/g.json" --time-limit "$number"
+    expect 2 plan "$a1" -o "$work/g.json" --iteration-limit "$number"
+    expect 2 plan "$a1" -o "$work/g.json" --edge-step "$number"
+    expect 2 plan "$a1" -o "$work/g.json" --extension "$number"
+    expect 2 plan "$a1" -o "$work/g.json" --shortcuts "$number"
+    expect 2 plan "$a1" -o "$work/g.json" --cuts "$number"
+    expect 2 plan "$a1" -o "$work/g.json" --seed "$number"
+    expect 2 plan "$a1" -o "$work/g.json" --threads "$number"
+    expect 2 audit "$work/g.json" --dense "$number"
+    expect 2 stability --guide "$work/g.json" --at "$number"
+    says "--at"
+    expect 2 view "$work/g.json" -o "$work/g.html" --frames "$number"
+    expect 2 merge "$work" --expect "$number"
+  done
   [ ! -e "$work/g.json" ] || fail "a usage error wrote a file"
 }
 

@@ -199,7 +199,7 @@ std::string TiesOfStances(TieRng& rng, long every, Tally* tally) {
     if (walls.facets.empty() && walls.equations.empty()) continue;
     const numeric::WrenchDemand demand(tie.demand);
     const std::string wrong = CheckAnswer(cone, rays, demand, walls.Where(demand.Exact()),
-                                          tally->checked * every < tally->cases, &workspace, tally);
+                                          SlowCheckIsDue(*tally, every), &workspace, tally);
     if (!wrong.empty()) return tie.name + ": " + wrong;
   }
   return "";
@@ -225,7 +225,7 @@ std::string TiesOfCones(TieRng& rng, long every, Tally* tally) {
     if (!IsNear(tie, walls)) continue;
     const std::string wrong =
         CheckAnswer(cone, columns, numeric::WrenchDemand(tie.v), walls.Where(LiftWrench(tie.v)),
-                    tally->checked * every < tally->cases, &workspace, tally);
+                    SlowCheckIsDue(*tally, every), &workspace, tally);
     if (!wrong.empty()) return wrong;
   }
   return "";
@@ -255,7 +255,7 @@ std::string TiesOfFacets(TieRng& rng, long every, Tally* tally) {
     const exact::HalfspaceCone ours = numeric::ExactFacets(wrenches, dual);
     if (!(ours == exact::FacetsOf(generators)))
       return "the certified facets are not the exact ones";
-    if (tally->checked * every >= tally->cases) continue;
+    if (!SlowCheckIsDue(*tally, every)) continue;
     ++tally->checked;
     if (!(exact::GeneratorsOf(ours) == exact::Minimal(generators))) {
       return "the facets do not give the generators back";

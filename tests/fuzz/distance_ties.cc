@@ -156,9 +156,8 @@ numeric::Convex View(const Points& points) {
 
 // Doubles prove the hulls apart or overlapping, or leave the pair to the exact comparison.
 std::string CheckEnclosure(const Pair& pair, const Rational& squared, Tally* tally) {
-  numeric::StageCounts counts;
   const numeric::DirectedClearance clearance =
-      numeric::ConvexClearance(View(pair.a), View(pair.b), 100, &counts);
+      numeric::ConvexClearance(View(pair.a), View(pair.b), 100);
   const bool apart = !clearance.overlap && clearance.lo > 0;
   ++tally->cases;
   ++(apart || clearance.overlap ? tally->fast : tally->exact);
@@ -182,7 +181,7 @@ std::string TiesOfDistance(TieRng& rng, long every, Tally* tally) {
     Pair pair = TouchingPair(rng);
     if (!Step(rng, &pair)) continue;
     Rational squared;
-    std::string wrong = CheckAnswer(pair, tally->checked * every <= tally->cases, &squared, tally);
+    std::string wrong = CheckAnswer(pair, SlowCheckIsDue(*tally, every), &squared, tally);
     if (wrong.empty()) wrong = CheckThreshold(pair, 0, squared, tally);
     if (!wrong.empty()) return wrong;
     // Apart by a distance that is a double or is not; thresholds around it.
@@ -200,6 +199,7 @@ std::string TiesOfDistance(TieRng& rng, long every, Tally* tally) {
 }
 
 std::string TiesOfClearance(TieRng& rng, long every, Tally* tally) {
+  if (Below(rng, 2) == 0) return TiesOfPlacedClearance(rng, tally);
   for (int k = 0; k < 16; ++k) {
     Pair pair = TouchingPair(rng);
     const std::optional<double> step = Step(rng, &pair);
@@ -208,7 +208,7 @@ std::string TiesOfClearance(TieRng& rng, long every, Tally* tally) {
     const auto exact = numeric::SquaredConvexDistance(pair.a, pair.b).squared;
     const std::string wrong = CheckEnclosure(pair, exact, tally);
     if (!wrong.empty()) return wrong;
-    if (tally->checked * every >= tally->cases) continue;
+    if (!SlowCheckIsDue(*tally, every)) continue;
     ++tally->checked;
     if (exact::SquaredConvexDistanceByQp(Lifted(pair.a), Lifted(pair.b)).squared != exact) {
       return "quadratic programming finds another distance";

@@ -76,7 +76,7 @@ std::string CheckExactStage(const numeric::StabilityQuery& query, Verdict truth,
   } else {
     ++tally->open;
   }
-  if (tally->checked * every >= tally->cases) return "";
+  if (!SlowCheckIsDue(*tally, every)) return "";
   ++tally->checked;
   const exact::StabilityResult twin = exact::DecideStability(lifted);
   const bool agrees = twin.reason == exact::StabilityReason::kLadder ||

@@ -97,7 +97,7 @@ std::string TiesOfTriangles(TieRng& rng, long every, Tally* tally) {
     if (exact::SquaredNorm(ours.a - ours.b) != ours.squared) return "the closest pair is another";
     const auto& one = exact_a.triangles.at(static_cast<std::size_t>(ours.index_a));
     const auto& other = exact_b.triangles.at(static_cast<std::size_t>(ours.index_b));
-    if (tally->checked * every >= tally->cases) continue;
+    if (!SlowCheckIsDue(*tally, every)) continue;
     ++tally->checked;
     if (exact::SquaredConvexDistanceByQp(one, other).squared != ours.squared) {
       return "quadratic programming finds another distance for the closest triangles";

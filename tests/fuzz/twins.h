@@ -33,6 +33,13 @@ std::string CheckStability(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckDistance(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckTriangles(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckClearance(ByteStream& in, bool thorough, Tally* tally);
+std::string CheckContacts(ByteStream& in, bool thorough, Tally* tally);
+
+/** Whether the slow checks of a near tie are to be made: of one case in `every`, as the tally
+ stands, or of all where `every` is 1. */
+inline bool SlowCheckIsDue(const Tally& tally, long every) {
+  return every <= 1 || tally.checked * every <= tally.cases;
+}
 
 /** Makes and checks one family of near ties: a few dozen about one stance or pair of bodies, each
  within 2^-30 of a boundary of the predicate relative to the size of its numbers, or exactly on it.
@@ -50,6 +57,9 @@ std::string TiesOfStabilityCertificates(std::mt19937_64& rng, Tally*);
 std::string TiesOfDistance(std::mt19937_64& rng, long every, Tally* tally);
 std::string TiesOfTriangles(std::mt19937_64& rng, long every, Tally* tally);
 std::string TiesOfClearance(std::mt19937_64& rng, long every, Tally* tally);
+/** Of TiesOfClearance half: balls, capsules and boxes, rotated, some with errors. */
+std::string TiesOfPlacedClearance(std::mt19937_64& rng, Tally* tally);
+std::string TiesOfContacts(std::mt19937_64& rng, long every, Tally* tally);
 
 struct Family {
   const char* name;
@@ -61,6 +71,7 @@ inline constexpr Family kFamilies[] = {{"cone", &CheckCone, &TiesOfCones},
                                        {"stability", &CheckStability, &TiesOfStability},
                                        {"distance", &CheckDistance, &TiesOfDistance},
                                        {"triangles", &CheckTriangles, &TiesOfTriangles},
-                                       {"clearance", &CheckClearance, &TiesOfClearance}};
+                                       {"clearance", &CheckClearance, &TiesOfClearance},
+                                       {"contacts", &CheckContacts, &TiesOfContacts}};
 
 }  // namespace cguide::fuzz

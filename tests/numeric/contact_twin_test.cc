@@ -2,10 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "cguide/exact/contact.h"
-#include "cguide/exact/linear_algebra.h"
-#include "cguide/numeric/stability.h"
-#include "cguide/numeric/world.h"
+#include "tests/numeric/contact_agreement.h"
 #include "tests/numeric/geometry_models.h"
 #include "tests/planner/room.h"
 
@@ -17,6 +14,7 @@ using test::Between;
 using test::OneObject;
 using test::RandomPoint;
 using test::RandomQuaternion;
+using testing::Agree;
 
 struct Counts {
   int certain = 0;         ///< contacts certain on both sides
@@ -24,33 +22,6 @@ struct Counts {
   int doubtful_exact = 0;  ///< not certain even in exact arithmetic
   int possible_only = 0;   ///< possible in floats, none in truth
 };
-
-bool Within(const Eigen::Vector3d& a, const Vector3q& b, const Rational& error) {
-  return exact::SquaredNorm(Lift(a) - b) <= error * error;
-}
-
-/** The unit vector of an exact contact, up to 2^-80. */
-Vector3q Unit(const FoundContact& c) {
-  const Vector3q& w = c.contact.cone.w;
-  return exact::Scaled(1 / exact::SqrtUp(exact::SquaredNorm(w), 90), w);
-}
-
-/** Whether both may describe one local closest point: site, y, distance, normal and friction agree
- within the errors that each side states. */
-bool Agree(const Contact& fast, const FoundContact& slow) {
-  if (fast.site != slow.site || fast.body != slow.body) return false;
-  const Rational error = Lift(fast.error);
-  if (!Within(fast.x_W, slow.x, error + slow.error_x)) return false;
-  if (!Within(fast.y_W, slow.y, error + slow.error_y)) return false;
-  if (abs(Lift(fast.distance) - slow.distance) > error + slow.error_distance) return false;
-  if (Lift(fast.friction) != slow.contact.cone.mu) return false;
-  const double bound = NormalError(fast);
-  if (!(bound < 2)) return true;
-  const Rational length = exact::SqrtDown(exact::SquaredNorm(slow.contact.cone.w));
-  if (slow.contact.error_w >= length) return true;
-  const Rational slack = 2 * slow.contact.error_w / length + Lift(0x1p-79);
-  return Within(fast.n_W, Unit(slow), Lift(bound) + slack);
-}
 
 class Twins {
  public:

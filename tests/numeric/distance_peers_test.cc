@@ -55,11 +55,11 @@ void RequireOursRight(const ConvexPair& pair, const Rational& squared) {
     p.SetHull(pair.a);
     q.SetHull(pair.b);
   }
-  StageCounts counts;
-  const DirectedClearance clearance = ConvexClearance(p.set, q.set, INFINITY, &counts);
+  const DirectedClearance clearance = ConvexClearance(p.set, q.set, INFINITY);
   REQUIRE(Encloses(clearance.lo, clearance.hi, squared));
   if (clearance.overlap) REQUIRE(squared == 0);
   SeparationHint hint;
+  StageCounts counts;
   const Verdict verdict = DecideConvex(p.set, q.set, 0, &hint, &counts);
   if (verdict == Verdict::kHolds) REQUIRE(squared > 0);
   if (verdict == Verdict::kFails) REQUIRE(squared == 0);

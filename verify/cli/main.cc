@@ -2,6 +2,8 @@
 #include <charconv>
 #include <functional>
 #include <iostream>
+#include <limits>
+#include <sstream>
 
 #include "cguide/exact/core/error.h"
 #include "cguide/verify/cli/commands.h"
@@ -13,11 +15,31 @@
 namespace cguide::cli {
 namespace {
 
+constexpr double kLargest = std::numeric_limits<double>::max();
+constexpr double kSmallestPositive = std::numeric_limits<double>::min();
+
+/** What every numeric option is checked with: a number between the bounds, which belong to it.
+ CLI11's own ranges ask whether the number is outside, and what is not a number never is. */
+CLI::Validator Within(double low, double high, const std::string& name = "") {
+  std::ostringstream range;
+  range << "number from " << low << " to " << high;
+  const std::string wanted = name.empty() ? range.str() : name;
+  return {[low, high, wanted](std::string& text) {
+            double value = 0;
+            const bool inside =
+                CLI::detail::lexical_cast(text, value) && low <= value && value <= high;
+            return inside ? std::string() : "\"" + text + "\" is no " + wanted;
+          },
+          wanted};
+}
+
+CLI::Validator Positive() { return Within(kSmallestPositive, kLargest, "positive number"); }
+
 void AddCommon(CLI::App* command, CommonArguments* common) {
   command->add_flag("-q,--quiet", common->quiet, "No talk on stderr, errors only");
   command
       ->add_option("--threads", common->threads, "Threads to use; the result does not depend on it")
-      ->check(CLI::Range(1, 1024));
+      ->check(Within(1, 1024));
 }
 
 void AddReading(CLI::App* command, PathArguments* reading) {
@@ -42,12 +64,14 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
   c->add_option("--space", a->space, "guide: near contact and balanced; free: collision-free only")
       ->check(CLI::IsMember({"guide", "free"}))
       ->capture_default_str();
-  c->add_option("--seed", a->seed, "Seed of all random choices")->capture_default_str();
+  c->add_option("--seed", a->seed, "Seed of all random choices")
+      ->check(Within(0, 0x1p64, "whole number from 0 on"))
+      ->capture_default_str();
   c->add_option("--time-limit", a->time_limit_s, "Give up after this many seconds")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->capture_default_str();
   c->add_option("--iteration-limit", a->iteration_limit, "Give up after this many iterations")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->capture_default_str();
   c->add_option("--edges", a->edges, "How edges are tested: every real s of them, or samples")
       ->check(CLI::IsMember({"proved", "sampled"}))
@@ -59,19 +83,19 @@ CLI::App* AddPlan(CLI::App& app, PlanArguments* a) {
       ->check(CLI::Validator(RobustnessProblem, "BOX"));
   c->add_option("--edge-step", a->edge_step,
                 "Distance between the samples, with --edges sampled; default: 0.005")
-      ->check(CLI::Range(1e-4, 1.0));
+      ->check(Within(1e-4, 1.0));
   c->add_option("--extension", a->extension, "Length of an extension of a tree")
-      ->check(CLI::Range(0.01, 10.0));
+      ->check(Within(0.01, 10.0));
   c->add_option("--link", a->link,
                 "straight: projected steps; flow: along the contacts that bear force")
       ->check(CLI::IsMember({"straight", "flow"}))
       ->capture_default_str();
   c->add_option("--shortcuts", a->shortcut_rounds,
                 "Rounds of shortcutting; by default five a waypoint, at least 200")
-      ->check(CLI::Range(0, 100000));
+      ->check(Within(0, 100000));
   c->add_option("--cuts", a->corner_cuts,
                 "Then so many corners are tried to be cut: shorter, with less room beside them")
-      ->check(CLI::Range(0, 100000))
+      ->check(Within(0, 100000))
       ->capture_default_str();
   c->add_option("--stats", a->stats, "File for times, counters and the guide's quality (JSON)");
   c->add_option("--roadmap", a->roadmap,
@@ -135,7 +159,7 @@ CLI::App* AddAudit(CLI::App& app, AuditArguments* a) {
   AddList(c, path, a);
   c->add_option("--dense", a->dense_step,
                 "Sample every edge at this step; default: prove whole edges")
-      ->check(CLI::Range(1e-6, 1.0));
+      ->check(Within(1e-6, 1.0));
   c->add_option("--format", a->format, "Form of the report")
       ->check(CLI::IsMember({"text", "json", "junit", "sarif"}))
       ->capture_default_str();
@@ -169,7 +193,7 @@ CLI::App* AddMerge(CLI::App& app, MergeArguments* a) {
   c->add_option("folder", a->folder, "Folder that was given to audit --out")->required();
   c->add_option("--expect", a->expect, "How many shards there have to be")
       ->required()
-      ->check(CLI::Range(1, kMostShards));
+      ->check(Within(1, kMostShards));
   c->add_option("--format", a->format, "Form of the summary on stdout")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
@@ -184,7 +208,8 @@ CLI::App* AddStability(CLI::App& app, StabilityArguments* a) {
   c->add_option("--posture", a->posture,
                 "start, goal, or a posture placed at the start's root pose");
   c->add_option("--guide", a->guide, "Take the configuration from a guide or a foreign path");
-  c->add_option("--at", a->at, "Edge index plus s, as in 12.5")->check(CLI::NonNegativeNumber);
+  c->add_option("--at", a->at, "Edge index plus s, as in 12.5")
+      ->check(Within(0, kLargest, "number from 0 on"));
   c->add_option("--format", a->format, "Form of the report")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
@@ -217,7 +242,7 @@ CLI::App* AddView(CLI::App& app, ViewArguments* a) {
   c->add_option(
       "--certificate", a->certificate,
       "Certificate of this path: it is checked, and the page says which edges are proved");
-  c->add_option("--frames", a->frames, "Frames of the animation")->check(CLI::Range(2, 5000));
+  c->add_option("--frames", a->frames, "Frames of the animation")->check(Within(2, 5000));
   AddCommon(c, &a->common);
   return c;
 }
