@@ -10,6 +10,7 @@
 #include <ompl/tools/benchmark/Benchmark.h>
 #include <ompl/util/Console.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -37,7 +38,16 @@ struct Arguments {
 
 Arguments Parse(int argc, char** argv) {
   std::map<std::string, std::string> given;
-  for (int i = 1; i + 1 < argc; i += 2) given[argv[i]] = argv[i + 1];
+  for (int i = 1; i < argc; i += 2) {
+    const std::string word = argv[i];
+    const std::vector<std::string> known{"--problem", "--log",  "--edges",
+                                         "--prm",     "--runs", "--time"};
+    if (i + 1 == argc || std::find(known.begin(), known.end(), word) == known.end()) {
+      std::cerr << "ompl_planners: " << word << ": unknown, or without a value\n";
+      std::exit(2);
+    }
+    given[word] = argv[i + 1];
+  }
   Arguments a;
   if (given.count("--problem")) a.problem = given["--problem"];
   if (given.count("--log")) a.log = given["--log"];

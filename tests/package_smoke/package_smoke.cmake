@@ -13,3 +13,6 @@ run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${WORK}/build -DCMAKE_BUILD
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/consumer ${PROBLEM})
 run(${WORK}/prefix/bin/cguide --version)
+if(EXISTS ${WORK}/build/ompl_consumer)
+  run(${WORK}/build/ompl_consumer ${PROBLEM})
+endif()

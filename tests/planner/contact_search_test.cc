@@ -180,6 +180,21 @@ TEST_CASE("the search gets up from the chair, the same way with any number of th
   CHECK(two.counters.newton_steps == one.counters.newton_steps);
 }
 
+TEST_CASE("the search gets up from prone and climbs six steps") {
+  const ExtensionOptions extension = Repairing();
+  for (const char* name : {"getting_up", "stairs_six"}) {
+    const Room room(name);
+    const EdgeOracle oracle = numeric::MakeSampledOracle(room.world, {kStep});
+    const PlanResult result =
+        PlanContacts(room.world, room.problem.sampling, room.problem.start, room.problem.goal,
+                     oracle, extension, {}, Limited(1, 1, 100000));
+    REQUIRE(result.stop == StopReason::kSolved);
+    CHECK(result.waypoints.front() == room.problem.start);
+    CHECK(result.waypoints.back() == room.problem.goal);
+    CheckChain(room, room.problem.start, {result.waypoints.begin() + 1, result.waypoints.end()});
+  }
+}
+
 TEST_CASE("a search whose oracle never says yes ends at its limit with nothing") {
   const EdgeOracle undecided = [](const Edge&) { return Verdict::kUndecided; };
   const ExtensionOptions extension = Repairing();
