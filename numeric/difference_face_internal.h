@@ -7,6 +7,7 @@
 
 #include "cguide/exact/distance_internal.h"
 #include "cguide/numeric/gjk_internal.h"
+#include "cguide/numeric/integer_vector_internal.h"
 
 namespace cguide::numeric {
 
@@ -70,9 +71,6 @@ struct IntegerFace {
   long exponent = 0;
   mpz_class scale = 1;
 };
-
-IntegerPoint Cross(const IntegerPoint& p, const IntegerPoint& q);
-mpz_class Dot(const IntegerPoint& p, const IntegerPoint& q);
 
 /** p - q for points of the same set, times a positive number. */
 IntegerPoint IntegerDifference(const HullPair& hulls, bool of_b, int p, int q);

@@ -9,17 +9,6 @@
 namespace cguide::numeric {
 using Eigen::Vector3d;
 
-IntegerPoint Cross(const IntegerPoint& p, const IntegerPoint& q) {
-  return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
-}
-
-mpz_class Dot(const IntegerPoint& p, const IntegerPoint& q) {
-  mpz_class sum = p[0] * q[0];
-  mpz_addmul(sum.get_mpz_t(), p[1].get_mpz_t(), q[1].get_mpz_t());
-  mpz_addmul(sum.get_mpz_t(), p[2].get_mpz_t(), q[2].get_mpz_t());
-  return sum;
-}
-
 namespace {
 
 IntegerPoint Minus(const IntegerPoint& p, const IntegerPoint& q) {

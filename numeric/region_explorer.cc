@@ -14,10 +14,10 @@ constexpr int kPhasePivots = 120;
 constexpr double kDeep =
     0.01;  // of tau: the inner direction then carries a good part of the weight
 
-void Deepen(Simplex* simplex) {
+void Deepen(StabilitySimplex* simplex) {
   constexpr double kRoom = 1e-6;
   while (simplex->pivots() < kPhasePivots && simplex->tau() < kDeep &&
-         simplex->Iterate(kRoom) == Simplex::Step::kMoved) {
+         simplex->Iterate(kRoom) == StabilitySimplex::Step::kMoved) {
   }
 }
 
@@ -65,7 +65,7 @@ bool RegionExplorer::FindInside(const StabilityQuery& query) {
   if (!start_->Prepare() || !start_->full_rank()) return false;
   Deepen(&*start_);
   if (start_->tau() >= kDeep) return true;
-  Simplex deep = *start_;
+  StabilitySimplex deep = *start_;
   deep.Free(e1_);
   deep.Free(e2_);
   Deepen(&deep);
@@ -86,7 +86,7 @@ bool RegionExplorer::FindInside(const StabilityQuery& query) {
 BoundaryPoint RegionExplorer::Shoot(const Vector2d& d) {
   const ScaledContacts& contacts = workspace_->scratch->contacts;
   const double limit = kReach / contacts.length;
-  Simplex shot = *start_;
+  StabilitySimplex shot = *start_;
   const double reached = shot.Shoot(shot.ShiftRate(InWorld(d)), limit);
   BoundaryPoint point;
   point.p = inside_ + reached * contacts.length * d;

@@ -76,7 +76,7 @@ class RegionExplorer {
   FloatBalance inner_balance() const { return BalanceAt(inside_, *start_); }
 
  private:
-  static FloatBalance BalanceAt(const Eigen::Vector2d& q, const Simplex& state) {
+  static FloatBalance BalanceAt(const Eigen::Vector2d& q, const StabilitySimplex& state) {
     FloatBalance balance;
     balance.q = q;
     balance.forces = state.Forces(&balance.base_weight);
@@ -89,7 +89,7 @@ class RegionExplorer {
   const bool keep_evidence_;
   Eigen::Vector3d e1_, e2_;
   Eigen::Vector2d inside_ = Eigen::Vector2d::Zero();
-  std::optional<Simplex> start_;  // a feasible state at inside_
+  std::optional<StabilitySimplex> start_;  // a feasible state at inside_
   std::vector<BoundaryPoint> points_;
   std::vector<FloatBalance> balances_;
 };

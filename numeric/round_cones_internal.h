@@ -1,19 +1,15 @@
 #pragma once
 
-#include <gmpxx.h>
-
-#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "cguide/exact/equilibrium.h"
+#include "cguide/numeric/integer_vector_internal.h"
 #include "cguide/numeric/stability_contacts_internal.h"
 
 // The stored contacts of a question of static stability over the integers, for its exact stage.
 namespace cguide::numeric {
-
-using Integer3 = std::array<mpz_class, 3>;
 
 /** A revolution cone: u with s = u.w >= 0 and s^2 (mu_den + mu_num) >= |u|^2 ww mu_den. */
 struct IntegerCone {
@@ -42,10 +38,6 @@ struct IntegerEquilibrium {
  together; fills the result then. */
 bool LiftEquilibrium(const StabilityQuery& query, const ScaledContacts& scaled, int count,
                      IntegerEquilibrium* result);
-
-// Of integer_face.cc.
-mpz_class Dot(const Integer3& a, const Integer3& b);
-Integer3 Cross(const Integer3& a, const Integer3& b);
 
 /** The sign of s^2 (1 + mu^2) - |u|^2 |w|^2 where s = u.w > 0: positive inside the cone, 0 on its
  boundary; negative for every other u but 0. */

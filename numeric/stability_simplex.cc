@@ -56,7 +56,7 @@ Eigen::Vector3d Cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
-Simplex::Price Simplex::DearestContact(const Vector6d& y) const {
+StabilitySimplex::Price StabilitySimplex::DearestContact(const Vector6d& y) const {
   Price best;
   best.value = -INFINITY;
   Block block;
@@ -72,7 +72,7 @@ Simplex::Price Simplex::DearestContact(const Vector6d& y) const {
 }
 
 // The contact whose cone reaches farthest along rho or -rho; the sign of `value` says which.
-Simplex::Price Simplex::LargestSupport(const Vector6d& rho) const {
+StabilitySimplex::Price StabilitySimplex::LargestSupport(const Vector6d& rho) const {
   Price best;
   Block block;
   for (int first = 0; first < count_; first += kBlock) {
@@ -86,7 +86,7 @@ Simplex::Price Simplex::LargestSupport(const Vector6d& rho) const {
   return best;
 }
 
-Generator Simplex::MakeGenerator(int contact, const Vector6d& y) const {
+Generator StabilitySimplex::MakeGenerator(int contact, const Vector6d& y) const {
   const Eigen::Vector3d r = c_.arm(contact), n = c_.normal(contact);
   Generator generator;
   generator.contact = contact;
@@ -105,7 +105,7 @@ Generator Simplex::MakeGenerator(int contact, const Vector6d& y) const {
   return generator;
 }
 
-void Simplex::Pivot(int row, const Vector6d& alpha) {
+void StabilitySimplex::Pivot(int row, const Vector6d& alpha) {
   const Eigen::Matrix<double, 1, 6> pivot_row = inverse_.row(row) / alpha[row];
   for (int k = 0; k < 6; ++k) {
     if (k == row) continue;
@@ -117,7 +117,7 @@ void Simplex::Pivot(int row, const Vector6d& alpha) {
 
 // Replaces the unit columns one by one by the generator with the largest pivot element. A row
 // without one is orthogonal to the whole cone and stays artificial.
-void Simplex::Crash() {
+void StabilitySimplex::Crash() {
   for (int row = 0; row < 6; ++row) {
     kind_[row] = Kind::kArtificial;
     Vector6d rho = inverse_.row(row);
@@ -136,7 +136,7 @@ void Simplex::Crash() {
 // Feasible start: with beta = B^-1 v, x = beta - tau w >= 0 for tau = min beta/w, whose row the
 // direction takes over. Artificial columns get weight 0 in the direction and the sign that makes
 // them feasible.
-bool Simplex::Start() {
+bool StabilitySimplex::Start() {
   x_ = inverse_.leftCols<3>() * c_.v_f;
   int row = -1;
   double tau = INFINITY;
@@ -170,7 +170,7 @@ bool Simplex::Start() {
 
 // y = -c_B B^-1. Where v is outside the span of the cone, the distance from the span is what y
 // should see, so artificial columns cost 1 and the direction earns no more than the others.
-void Simplex::ComputeMultipliers(double s) {
+void StabilitySimplex::ComputeMultipliers(double s) {
   Vector6d cost;
   for (int k = 0; k < 6; ++k) {
     cost[k] = s;
@@ -182,7 +182,7 @@ void Simplex::ComputeMultipliers(double s) {
 }
 
 // The row that first reaches zero; among (nearly) equal ones the largest divisor.
-int Simplex::ChooseLeaving(const Vector6d& alpha) const {
+int StabilitySimplex::ChooseLeaving(const Vector6d& alpha) const {
   int row = -1;
   double ratio = INFINITY;
   for (int k = 0; k < 6; ++k) {
@@ -200,7 +200,7 @@ int Simplex::ChooseLeaving(const Vector6d& alpha) const {
 }
 
 // Brings a column in; false where nothing limits it, and then nothing has changed.
-bool Simplex::Enter(const Generator& entering, Kind kind) {
+bool StabilitySimplex::Enter(const Generator& entering, Kind kind) {
   const Vector6d alpha = inverse_ * entering.wrench;
   const int row = ChooseLeaving(alpha);
   if (row < 0) {
@@ -222,7 +222,7 @@ bool Simplex::Enter(const Generator& entering, Kind kind) {
 
 // Nothing stops the entering weight. If tau rises with it, -a is in the cone, which is then the
 // whole space: go where tau is comfortable. Else the cone has a line, and no s > 0 will do.
-Simplex::Step Simplex::FollowRay(const Generator& entering) {
+StabilitySimplex::Step StabilitySimplex::FollowRay(const Generator& entering) {
   const double rate = -ray_[direction_row_];
   if (!(rate > kPivotTolerance)) return Step::kStuck;
   const double theta = (1 + std::abs(x_[direction_row_])) / rate;
@@ -233,7 +233,7 @@ Simplex::Step Simplex::FollowRay(const Generator& entering) {
   return Step::kUnbounded;
 }
 
-Simplex::Step Simplex::Iterate(double s) {
+StabilitySimplex::Step StabilitySimplex::Iterate(double s) {
   ComputeMultipliers(s);
   const Price best = DearestContact(y_);
   double shift_price = 0;
@@ -252,9 +252,9 @@ Generator ShiftColumn(const ScaledContacts& c, const Eigen::Vector3d& delta) {
   return column;
 }
 
-void Simplex::Free(const Eigen::Vector3d& d) { shift_[num_shifts_++].d = d; }
+void StabilitySimplex::Free(const Eigen::Vector3d& d) { shift_[num_shifts_++].d = d; }
 
-int Simplex::DearestShift(double* price) const {
+int StabilitySimplex::DearestShift(double* price) const {
   int best = -1;
   for (int i = 0; i < num_shifts_; ++i) {
     if (shift_[i].row >= 0) continue;
@@ -267,7 +267,7 @@ int Simplex::DearestShift(double* price) const {
   return best;
 }
 
-Simplex::Step Simplex::EnterShift(int i) {
+StabilitySimplex::Step StabilitySimplex::EnterShift(int i) {
   Shift& shift = shift_[i];
   const double slope = y_.dot(ShiftColumn(c_, shift.d).wrench);
   shift.sign = slope > 0 ? 1 : -1;
@@ -281,7 +281,7 @@ Simplex::Step Simplex::EnterShift(int i) {
   return step;
 }
 
-Eigen::Vector3d Simplex::displacement() const {
+Eigen::Vector3d StabilitySimplex::displacement() const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < num_shifts_; ++i) {
     sum +=
@@ -290,10 +290,12 @@ Eigen::Vector3d Simplex::displacement() const {
   return sum;
 }
 
-Vector6d Simplex::ShiftRate(const Eigen::Vector3d& d) const { return -ShiftColumn(c_, d).wrench; }
+Vector6d StabilitySimplex::ShiftRate(const Eigen::Vector3d& d) const {
+  return -ShiftColumn(c_, d).wrench;
+}
 
 // From now on the direction is a generator like others, with the weight tau >= 0.
-double Simplex::Shoot(const Vector6d& rate, double limit) {
+double StabilitySimplex::Shoot(const Vector6d& rate, double limit) {
   constexpr double kPriceTolerance = 1e-12;
   kind_[direction_row_] = Kind::kContact;
   Generator column;
@@ -323,7 +325,7 @@ double Simplex::Shoot(const Vector6d& rate, double limit) {
 }
 
 // One step of iterative refinement: the inverse is good enough for a correction.
-void Simplex::Polish() {
+void StabilitySimplex::Polish() {
   if (shot_row_ < 0) return;
   Vector6d rest = Vector6d::Zero();
   rest.head<3>() = c_.v_f;
@@ -344,7 +346,7 @@ void Simplex::Polish() {
   reached_ = x_[shot_row_];
 }
 
-std::vector<WeightedGenerator> Simplex::Forces(std::array<double, 6>* base_weight) const {
+std::vector<WeightedGenerator> StabilitySimplex::Forces(std::array<double, 6>* base_weight) const {
   std::vector<WeightedGenerator> forces = held_;
   base_weight->fill(0);
   for (int k = 0; k < 6; ++k) {
@@ -358,7 +360,7 @@ std::vector<WeightedGenerator> Simplex::Forces(std::array<double, 6>* base_weigh
   return forces;
 }
 
-bool Simplex::TryInterior() {
+bool StabilitySimplex::TryInterior() {
   const double tau = x_[direction_row_];
   if (!full_rank_ || !(tau > 0)) return false;
   Balance& b = *balance_;
@@ -378,14 +380,14 @@ bool Simplex::TryInterior() {
   return ProveInterior(c_, balance_);
 }
 
-bool Simplex::Prepare() {
+bool StabilitySimplex::Prepare() {
   balance_->num_extra = 0;
   balance_->extra_weight[5] = 0;
   Crash();
   return Start();
 }
 
-Proposal Simplex::Run() {
+Proposal StabilitySimplex::Run() {
   if (!Prepare()) {  // no contact spans anything: only the cone {0} is left
     y_ << c_.v_f, 0, 0, 0;
     return ProveOutside(c_, y_) ? Proposal::kOutside : Proposal::kNone;
@@ -412,7 +414,7 @@ Proposal Simplex::Run() {
   return Proposal::kNone;
 }
 
-void Simplex::ReportEnd(SimplexEnd* end) const {
+void StabilitySimplex::ReportEnd(SimplexEnd* end) const {
   end->count = count_;
   end->length = c_.length;
   end->has_room = has_room_;
@@ -424,7 +426,7 @@ void Simplex::ReportEnd(SimplexEnd* end) const {
 
 Proposal SolveStability(const ScaledContacts& contacts, int count, Balance* balance, Vector6d* y,
                         int* pivots, SimplexEnd* end) {
-  Simplex simplex(contacts, count, balance);
+  StabilitySimplex simplex(contacts, count, balance);
   const Proposal proposal = simplex.Run();
   if (end != nullptr && proposal == Proposal::kNone) simplex.ReportEnd(end);
   *y = simplex.y();

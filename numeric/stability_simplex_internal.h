@@ -14,7 +14,7 @@ struct WeightedGenerator {
 
 /** The simplex method on revolution cones; how it works is told in stability_simplex.cc. Untrusted.
  */
-class Simplex {
+class StabilitySimplex {
  public:
   enum class Step {
     kMoved,
@@ -23,7 +23,7 @@ class Simplex {
     kStuck       ///< the cone contains a line along which only the room s grows
   };
 
-  Simplex(const ScaledContacts& contacts, int count, Balance* balance)
+  StabilitySimplex(const ScaledContacts& contacts, int count, Balance* balance)
       : c_(contacts), count_(count), balance_(balance) {}
 
   /** The whole question, certificates included. */

@@ -216,8 +216,8 @@ struct HeldSpace {
     state->as<ob::ConstrainedStateSpace::StateType>()->copy(coordinates.Write(q));
   }
 
-  /** The configurations of the way that OMPL goes from a to b, without a; nothing where it stops
-   early. @param valid whether states on the way have to be. */
+  /** The configurations of the way that OMPL goes from a to b, all of them valid, without a;
+   nothing where it stops early. */
   std::vector<Configuration> Way(const ob::State* a, const ob::State* b) const {
     std::vector<ob::State*> states;
     std::vector<Configuration> way;
