@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "cguide/exact/balance_checker_internal.h"
 #include "cguide/exact/core/error.h"
 #include "cguide/exact/linear_algebra.h"
 
@@ -10,104 +11,6 @@ namespace cguide::exact {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Rational Norm1(const Vector3q& a) { return abs(a[0]) + abs(a[1]) + abs(a[2]); }
-
-/** Checks balances of one query; what they share is computed once. */
-class BalanceChecker {
- public:
-  BalanceChecker(const EquilibriumQuery& query, const WrenchBasis& basis);
-
-  bool has_basis() const { return has_basis_; }
-  /** Whether the balance supplies the wrench v. */
-  bool Holds(const DisplacedBalance& balance, const Vector6q& v) const;
-
- private:
-  bool IsUsable(const ContactForce& force) const;
-  Vector6q WrenchOf(const ContactForce& force) const;
-  Rational Error(const ContactForce& force) const { return error_[force.contact] * Norm1(force.f); }
-  bool PrepareBasis();
-
-  const EquilibriumQuery& query_;
-  const WrenchBasis& basis_;
-  std::vector<std::optional<FrictionCone>> cones_;  // narrowed; none where not to be used
-  std::vector<Rational> error_;                     // of the arm
-  bool is_exact_ = true;
-  bool has_basis_ = false;
-  std::vector<Vector6q> wrenches_;  // of the basis
-  std::vector<Rational> rho_;       // of its rows
-  Rational kappa_ = 0;
-};
-
-BalanceChecker::BalanceChecker(const EquilibriumQuery& query, const WrenchBasis& basis)
-    : query_(query), basis_(basis) {
-  for (const ExactContact& contact : query.contacts) {
-    error_.push_back(contact.error_p + query.com_error);
-    cones_.emplace_back();
-    if (!contact.certain) continue;
-    cones_.back() = contact.error_w == 0 ? contact.cone : Narrowed(contact.cone, contact.error_w);
-    is_exact_ = is_exact_ && error_.back() == 0 && contact.error_w == 0;
-  }
-  is_exact_ = is_exact_ && query.com_error == 0;
-  has_basis_ = PrepareBasis();
-}
-
-bool BalanceChecker::IsUsable(const ContactForce& force) const {
-  return force.contact >= 0 && force.contact < static_cast<int>(cones_.size()) &&
-         cones_[force.contact] && IsAdmissible(*cones_[force.contact], force.f);
-}
-
-Vector6q BalanceChecker::WrenchOf(const ContactForce& force) const {
-  Vector6q wrench;
-  wrench.head(3) = force.f;
-  wrench.tail(3) = Cross(query_.contacts[force.contact].p - query_.com, force.f);
-  return wrench;
-}
-
-bool BalanceChecker::PrepareBasis() {
-  const MatrixXq& R = basis_.inverse;
-  if (basis_.columns.size() != 6 || R.rows() != 6 || R.cols() != 6) return false;
-  Rational error = 0;
-  for (const ContactForce& column : basis_.columns) {
-    if (!IsUsable(column)) return false;
-    wrenches_.push_back(WrenchOf(column));
-    error += Error(column);
-  }
-  for (int i = 0; i < 6; ++i) {
-    rho_.push_back(abs(R(i, 3)) + abs(R(i, 4)) + abs(R(i, 5)));
-    Rational row = rho_.back() * error;
-    for (int k = 0; k < 6; ++k) {
-      row += abs(Rational((i == k ? 1 : 0) - Dot(R.row(i), wrenches_[k])));
-    }
-    kappa_ = std::max(kappa_, row);
-  }
-  return kappa_ < 1;
-}
-
-bool BalanceChecker::Holds(const DisplacedBalance& balance, const Vector6q& v) const {
-  Vector6q rest = v;
-  Rational error = 0;
-  for (const ContactForce& force : balance.forces) {
-    if (!IsUsable(force)) return false;
-    rest -= WrenchOf(force);
-    error += Error(force);
-  }
-  if (balance.base_weight.empty()) return is_exact_ && IsZero(rest);
-  if (!has_basis_ || balance.base_weight.size() != 6) return false;
-  Rational least = balance.base_weight[0];
-  for (int k = 0; k < 6; ++k) {
-    const Rational& weight = balance.base_weight[k];
-    if (weight <= 0) return false;
-    least = std::min(least, weight);
-    for (int i = 0; i < 6; ++i) rest[i] -= weight * wrenches_[k][i];
-    error += weight * Error(basis_.columns[k]);
-  }
-  for (int i = 0; i < 6; ++i) {
-    const Rational moved = abs(Dot(basis_.inverse.row(i), rest)) + rho_[i] * error;
-    if (moved >= (1 - kappa_) * least) return false;
-  }
-  return true;
-}
 
 /** Geometry in the plane normal to up. */
 Rational Turn(const ComRegion& region, const Vector3q& a, const Vector3q& b) {
@@ -222,19 +125,13 @@ std::optional<ComRegion> CheckComRegion(const EquilibriumQuery& query, const Vec
     Require(contact.cone.mu >= 0, "a friction coefficient must not be negative");
     Require(contact.error_p >= 0 && query.com_error >= 0, "an error bound must not be negative");
   }
-  const BalanceChecker checker(query, evidence.basis);
+  const internal::BalanceChecker checker(query, evidence.basis);
   const Vector3q w = Scaled(-query.mass, query.gravity);
-  const auto demand = [&w](const Vector3q& displacement) {
-    Vector6q v;
-    v.head(3) = w;
-    v.tail(3) = Cross(displacement, w);
-    return v;
-  };
   ComRegion region;
   region.up = up;
   for (const DisplacedBalance& corner : evidence.corners) {
     if (Dot(corner.displacement, up) != 0) return std::nullopt;
-    if (!checker.Holds(corner, demand(corner.displacement))) return std::nullopt;
+    if (!checker.Holds(corner, internal::DemandAt(query, corner.displacement))) return std::nullopt;
     region.inner.push_back(corner.displacement);
   }
   if (!ArePolar(query, evidence.separators)) return std::nullopt;

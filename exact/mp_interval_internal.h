@@ -26,6 +26,10 @@ class MpInterval {
     mpfr_set_q(lo_, x.get_mpq_t(), MPFR_RNDD);
     mpfr_set_q(hi_, x.get_mpq_t(), MPFR_RNDU);
   }
+  MpInterval(const Rational& lo, const Rational& hi, mpfr_prec_t bits) : MpInterval(bits) {
+    mpfr_set_q(lo_, lo.get_mpq_t(), MPFR_RNDD);
+    mpfr_set_q(hi_, hi.get_mpq_t(), MPFR_RNDU);
+  }
   MpInterval(const MpInterval& other) : MpInterval(other.Bits()) {
     mpfr_set(lo_, other.lo_, MPFR_RNDD);
     mpfr_set(hi_, other.hi_, MPFR_RNDU);
@@ -54,6 +58,7 @@ class MpInterval {
     mpfr_neg(c.hi_, a.lo_, MPFR_RNDU);
     return c;
   }
+  friend MpInterval operator-(const MpInterval& a, const MpInterval& b) { return a + -b; }
   friend MpInterval operator*(const MpInterval& a, const MpInterval& b) {
     // A bilinear function takes its extremes at corners.
     MpInterval c(std::max(a.Bits(), b.Bits())), t(c.Bits());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cguide/exact/com_region.h"
+#include "cguide/exact/margin_gradient.h"
 #include "cguide/numeric/margins.h"
 
 namespace cguide::numeric {
@@ -62,6 +63,29 @@ struct ProvedSupportRegion {
 
 ProvedSupportRegion ProveSupportRegion(const StabilityQuery& query, const RegionOptions& options,
                                        StabilityWorkspace* workspace);
+
+/** How com_m changes, per metre, as the centre of mass or the points where contact forces act are
+ moved: boxes that hold the generalised gradient, see exact::CheckMarginGradient. */
+struct ProvedMarginGradient {
+  exact::Enclosure com_m;
+  exact::EnclosedVector com_W{};
+  /** One a contact of the query; zero where not certain. */
+  std::vector<exact::EnclosedVector> contact_W;
+  /** Of the contacts as stored: forces at force_point_W(), normals n_W, no errors. */
+  LiftedQuery lifted;
+  exact::MarginGradientEvidence evidence;  ///< exact::CheckMarginGradient has accepted it
+};
+
+/** The gradient of com_m (see ComMarginGradient) with a proof: floats propose, among them wrenches
+ for the stance with one contact moved by some micrometres, exact::CheckMarginGradient decides.
+ Against the stored contacts: nothing is said of their errors. The boxes are some 1e-5 wide where
+ line and forces are unique; at a kink they hold all one-sided derivatives and may be as wide as
+ those differ. Nothing where com_m is infinite or may be 0, the cone has rank < 6 or is not pointed
+ (force closure, a squeeze between facing walls), or no proof was found.
+ @throws Error as ProveComMargin. */
+std::optional<ProvedMarginGradient> ProveComMarginGradient(const StabilityQuery& query,
+                                                           const MarginOptions& options,
+                                                           StabilityWorkspace* workspace);
 
 /** `force` against the inscribed pyramids of query.generators sides of the certain contacts (see
  exact::InscribedCone: normals' errors are carried, those of the contacts' positions are not), by

@@ -14,6 +14,31 @@ constexpr int kPhasePivots = 120;
 constexpr double kDeep =
     0.01;  // of tau: the inner direction then carries a good part of the weight
 
+// The point farthest along h with no more than `reach` from the centre in each axis, within lines.
+std::optional<Vector2d> FarthestWithin(std::vector<BoundaryPoint> lines, const Vector2d& h,
+                                       const Vector2d& centre, double reach) {
+  const double slack = 1e-9 * reach;
+  for (const Vector2d& axis : {Vector2d(1, 0), Vector2d(-1, 0), Vector2d(0, 1), Vector2d(0, -1)}) {
+    BoundaryPoint& side = lines.emplace_back();
+    side.h = axis;
+    side.offset = axis.dot(centre) + reach;
+  }
+  std::optional<Vector2d> best;
+  for (const BoundaryPoint& a : lines) {
+    for (const BoundaryPoint& b : lines) {
+      const double det = Cross2(a.h, b.h);
+      if (std::abs(det) < 1e-12) continue;
+      const Vector2d p((a.offset * b.h[1] - b.offset * a.h[1]) / det,
+                       (b.offset * a.h[0] - a.offset * b.h[0]) / det);
+      const bool within = std::all_of(lines.begin(), lines.end(), [&](const BoundaryPoint& line) {
+        return line.h.dot(p) <= line.offset + slack;
+      });
+      if (within && (!best || h.dot(p) > h.dot(*best))) best = p;
+    }
+  }
+  return best;
+}
+
 void Deepen(StabilitySimplex* simplex) {
   constexpr double kRoom = 1e-6;
   while (simplex->pivots() < kPhasePivots && simplex->tau() < kDeep &&
@@ -106,6 +131,48 @@ BoundaryPoint RegionExplorer::Shoot(const Vector2d& d) {
     balances_.push_back(BalanceAt(inside_ + shot.reached() * contacts.length * d, shot));
   }
   return point;
+}
+
+// On the way from inside(), without a twist, to q and twist.
+FloatBalance RegionExplorer::ShootAtTwisted(const Vector2d& q, double twist, BoundaryPoint* point) {
+  constexpr double kLimit = 2;
+  const ScaledContacts& contacts = workspace_->scratch->contacts;
+  StabilitySimplex shot = *start_;
+  Vector6d rate = shot.ShiftRate(InWorld(q - inside_) / contacts.length);
+  rate.tail<3>() += twist / contacts.length * contacts.v_f;
+  shot.Shoot(rate, kLimit);
+  shot.Polish();
+  FloatBalance balance = BalanceAt(inside_ + shot.reached() * (q - inside_), shot);
+  balance.twist = shot.reached() * twist;
+  // The line at this twist is taken for that at the wanted one: they differ by less than a share of
+  // the twist, and only the next target depends on it.
+  const Eigen::Vector3d normal = contacts.v_f.cross(Eigen::Vector3d(shot.y().tail<3>()));
+  point->p = balance.q;
+  point->h = Vector2d(normal.dot(e1_), normal.dot(e2_)).normalized();
+  point->offset = point->h.dot(balance.q);
+  return balance;
+}
+
+// Where the region has a corner the line of one shot is not the one that binds along h: the next
+// aims at the farthest point within the lines so far.
+FloatBalance RegionExplorer::ShootTwisted(const Vector2d& q, const Vector2d& h, double twist) {
+  constexpr int kShots = 6;
+  constexpr double kAlike = 1e-4;
+  std::vector<BoundaryPoint> lines;
+  std::optional<FloatBalance> best;
+  Vector2d target = q;
+  for (int shot = 0; shot < kShots; ++shot) {
+    BoundaryPoint point;
+    FloatBalance balance = ShootAtTwisted(target, twist, &point);
+    const auto loss = [&](const FloatBalance& b) { return h.dot(q - b.q) / std::abs(b.twist); };
+    if (!best || loss(balance) < loss(*best)) best = balance;
+    if (!point.h.allFinite() || std::abs(Cross2(point.h, h)) < kAlike) break;
+    lines.push_back(point);
+    const auto next = FarthestWithin(lines, h, q, 1e3 * std::abs(twist));
+    if (!next || (*next - target).norm() < 1e-9 * std::abs(twist)) break;
+    target = *next;
+  }
+  return *best;
 }
 
 double RegionExplorer::LineLength(const BoundaryPoint& point) const {

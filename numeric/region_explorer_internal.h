@@ -26,6 +26,7 @@ struct BoundaryPoint {
 /** Forces in scaled units that balance the robot displaced by q, up to rounding. */
 struct FloatBalance {
   Eigen::Vector2d q = Eigen::Vector2d::Zero();  ///< m
+  double twist = 0;                             ///< m, see exact::TwistedBalance
   std::array<double, 6> base_weight{};          ///< on the base in the workspace
   std::vector<WeightedGenerator> forces;
 };
@@ -71,6 +72,10 @@ class RegionExplorer {
   /** A shot at the boundary on the ray from inside() through q, not kept among the points. */
   BoundaryPoint ShootAt(const Eigen::Vector2d& q) { return Shoot((q - inside_).normalized()); }
 
+  /** Forces at the boundary about where the twisted region, which is near q, reaches farthest along
+   h. */
+  FloatBalance ShootTwisted(const Eigen::Vector2d& q, const Eigen::Vector2d& h, double twist);
+
   /** Of the shots, where evidence is kept; the state at inside() is `inner_balance`. */
   const std::vector<FloatBalance>& balances() const { return balances_; }
   FloatBalance inner_balance() const { return BalanceAt(inside_, *start_); }
@@ -84,6 +89,7 @@ class RegionExplorer {
   }
   bool FindInside(const StabilityQuery& query);
   BoundaryPoint Shoot(const Eigen::Vector2d& d);
+  FloatBalance ShootAtTwisted(const Eigen::Vector2d& q, double twist, BoundaryPoint* point);
 
   StabilityWorkspace* const workspace_;
   const bool keep_evidence_;

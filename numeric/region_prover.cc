@@ -62,10 +62,10 @@ Vector6d RegionProver::WrenchOf(const Column& column) const {
   return wrench;
 }
 
-Vector6d RegionProver::Demand(const Eigen::Vector3d& displacement) const {
+Vector6d RegionProver::Demand(const Eigen::Vector3d& displacement, double twist) const {
   const Eigen::Vector3d w = -query_.mass * query_.gravity_W;
   Vector6d v;
-  v << w, displacement.cross(w);
+  v << w, displacement.cross(w) + twist * w;
   return v;
 }
 
@@ -110,7 +110,8 @@ RegionProver::Mixture RegionProver::Mix(const FloatBalance& balance, double shar
   const double v_scale = workspace_->scratch->contacts.v_scale;
   Mixture mixture;
   mixture.q = balance.q + share * (inner_.q - balance.q);
-  Vector6d rest = Demand(InPlane(mixture.q)), magnitude = rest.cwiseAbs();
+  mixture.twist = balance.twist + share * (inner_.twist - balance.twist);
+  Vector6d rest = Demand(InPlane(mixture.q), mixture.twist), magnitude = rest.cwiseAbs();
   double moment_error = 0;
   const auto subtract = [&](const Column& column) {
     const Vector6d wrench = WrenchOf(column);
@@ -143,7 +144,7 @@ RegionProver::Mixture RegionProver::Mix(const FloatBalance& balance, double shar
 
 // The share is what leaves the least base weight several times what may still be asked of it.
 std::optional<exact::DisplacedBalance> RegionProver::Corner(const FloatBalance& balance,
-                                                            double reach) const {
+                                                            double reach, Rational* twist) const {
   const double inner_least =
       workspace_->scratch->contacts.v_scale *
       *std::min_element(inner_.base_weight.begin(), inner_.base_weight.end());
@@ -157,6 +158,7 @@ std::optional<exact::DisplacedBalance> RegionProver::Corner(const FloatBalance& 
     if (least > 0 && least >= 4 * reach * mixture.moved) {
       exact::DisplacedBalance result;
       result.displacement = ExactInPlane(mixture.q);
+      if (twist != nullptr) *twist = Lift(mixture.twist);
       for (const double x : mixture.weight) result.base_weight.push_back(Lift(x));
       for (const Column& column : mixture.columns) {
         result.forces.push_back(Lifted(column, column.weight));
@@ -224,9 +226,13 @@ bool RegionProver::FindPole() {
   return pole_.has_value();
 }
 
-std::optional<Vector6q> RegionProver::Separator(const Vector6d& y, double reach) {
+const Vector6d* RegionProver::pole() {
   if (!pole_sought_) FindPole();
-  if (!pole_) return std::nullopt;
+  return pole_ ? &*pole_ : nullptr;
+}
+
+std::optional<Vector6q> RegionProver::Separator(const Vector6d& y, double reach) {
+  if (pole() == nullptr) return std::nullopt;
   double needed = 0;
   for (int i = 0; i < static_cast<int>(lifted_.contact.size()); ++i) {
     double slack = 0;

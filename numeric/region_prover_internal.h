@@ -28,10 +28,14 @@ class RegionProver {
 
   exact::WrenchBasis basis() const;
   /** The balance drawn towards the inner one; `reach` multiplies the share. Nothing where that
-   would be more than a thousandth. */
-  std::optional<exact::DisplacedBalance> Corner(const FloatBalance& balance, double reach) const;
+   would be more than a thousandth. `twist` becomes what it balances beside. */
+  std::optional<exact::DisplacedBalance> Corner(const FloatBalance& balance, double reach,
+                                                Rational* twist = nullptr) const;
   /** y made safe; nothing where the cone is not known to be pointed. */
   std::optional<Vector6q> Separator(const Vector6d& y, double reach);
+  /** z with z.a > 0 for every admissible a, in doubles; null where the cone is not known to be
+   pointed. */
+  const Vector6d* pole();
 
  private:
   struct Column {
@@ -42,6 +46,7 @@ class RegionProver {
 
   struct Mixture {
     Eigen::Vector2d q;
+    double twist = 0;
     std::vector<Column> columns;
     Vector6d weight;        // of the base
     double correction = 0;  // largest, of the weights for the residual
@@ -51,7 +56,7 @@ class RegionProver {
   Mixture Mix(const FloatBalance& balance, double share) const;
   Column ToColumn(const Generator& generator, double weight) const;
   Vector6d WrenchOf(const Column& column) const;
-  Vector6d Demand(const Eigen::Vector3d& displacement) const;
+  Vector6d Demand(const Eigen::Vector3d& displacement, double twist) const;
   exact::ContactForce Lifted(const Column& column, double scale) const;
   Eigen::Vector3d InPlane(const Eigen::Vector2d& q) const;
   Vector3q ExactInPlane(const Eigen::Vector2d& q) const;

@@ -53,12 +53,14 @@ void ReportStances(std::FILE* out, int patches) {
   }
   StabilityWorkspace workspace;
   std::fprintf(out, "  %d patches (median, 9th decile, us)\n", patches);
-  const numeric::RegionOptions coarse{{1e-4, 40}, {}};
+  const numeric::RegionOptions coarse{{1e-4, 40}, Eigen::Vector3d::Zero()};
   const std::vector<Row> rows{
       {"com_m, floats", 60, [&](const auto& q) { Keep(FindComMargin(q, {}, &workspace).lo); }},
       {"com_m, proved", 60, [&](const auto& q) { Keep(ProveComMargin(q, {}, &workspace)); }},
       {"gradient of com_m, floats", 60,
        [&](const auto& q) { Keep(ComMarginGradient(q, {}, &workspace)); }},
+      {"gradient of com_m, proved", 20,
+       [&](const auto& q) { Keep(ProveComMarginGradient(q, {}, &workspace)); }},
       {"support region, floats", 60,
        [&](const auto& q) { Keep(FindSupportRegion(q, coarse.margins, &workspace)); }},
       {"support region, proved", 30,

@@ -163,7 +163,7 @@ TEST_CASE("Altered evidence from floats is refused") {
   for (int i = 0; i < 12; ++i) {
     const Stance stance = RandomStance(1 + i % 3, rng);
     const ProvedSupportRegion region =
-        ProveSupportRegion(stance.Query(), {{1e-3, 12}, {}}, &workspace);
+        ProveSupportRegion(stance.Query(), {{1e-3, 12}, Eigen::Vector3d::Zero()}, &workspace);
     if (region.inner_W.empty()) continue;
     const auto& query = region.proof.lifted.query;
     const Vector3q up = region.proof.region.up;
