@@ -23,8 +23,8 @@ struct RegionOptions {
   MarginOptions margins;
   /** Balance while the centre of mass has this acceleration in W (m/s^2), angular momentum about it
    constant: gravity is replaced by gravity - acceleration, the plane of displacements stays normal
-   to gravity. */
-  Eigen::Vector3d acceleration_W = Eigen::Vector3d::Zero();
+   to gravity. Nothing: at rest; a vector would be left without a value by `{}`. */
+  std::optional<Eigen::Vector3d> acceleration_W;
 };
 
 /** A statement about the region of balanced displacements with the evidence that

@@ -19,7 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 StabilityQuery Accelerated(const StabilityQuery& query, const RegionOptions& options,
                            StabilityWorkspace* workspace) {
   StabilityQuery result = query;
-  result.gravity_W -= options.acceleration_W;
+  if (options.acceleration_W) result.gravity_W -= *options.acceleration_W;
   Require(!query.gravity_W.isZero(0), "gravity must not vanish");
   Require(ScaleContacts(result, &workspace->scratch->contacts),
           "numbers must be finite, mass positive, gravity different from the acceleration");
@@ -107,7 +107,8 @@ RegionProof::RegionProof(const StabilityQuery& query, const RegionOptions& optio
       lifted_(LiftCertain(query_)),
       explorer_(query_, workspace, {up_, true}),
       prover_(query_, up_, lifted_, workspace) {
-  lifted_.query.gravity = Lift(query.gravity_W) - Lift(options.acceleration_W);
+  lifted_.query.gravity = Lift(query.gravity_W);
+  if (options.acceleration_W) lifted_.query.gravity -= Lift(*options.acceleration_W);
   region_.up = Lift(up_);
   has_base_ = explorer_.found() && prover_.SetBase(explorer_);
 }

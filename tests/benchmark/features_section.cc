@@ -53,7 +53,7 @@ void ReportStances(std::FILE* out, int patches) {
   }
   StabilityWorkspace workspace;
   std::fprintf(out, "  %d patches (median, 9th decile, us)\n", patches);
-  const numeric::RegionOptions coarse{{1e-4, 40}, Eigen::Vector3d::Zero()};
+  const numeric::RegionOptions coarse{{1e-4, 40}, {}};
   const std::vector<Row> rows{
       {"com_m, floats", 60, [&](const auto& q) { Keep(FindComMargin(q, {}, &workspace).lo); }},
       {"com_m, proved", 60, [&](const auto& q) { Keep(ProveComMargin(q, {}, &workspace)); }},

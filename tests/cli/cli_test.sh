@@ -100,9 +100,11 @@ section_main_job() {
   says "statically stable"
   says "support region"
   says "mm, checked exactly"
+  says "gradient of the com margin, checked exactly"
   expect 0 stability "$a1" --posture goal --format json
   says '"verdict": "stable"'
   says '"com_margin_enclosure_m"'
+  says '"com_margin_gradient"'
   expect 1 stability "$room" --posture sitting
   says "separating wrench"
   expect 0 view "$work/guide.json" -o "$work/page.html"

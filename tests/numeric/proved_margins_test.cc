@@ -163,7 +163,7 @@ TEST_CASE("Altered evidence from floats is refused") {
   for (int i = 0; i < 12; ++i) {
     const Stance stance = RandomStance(1 + i % 3, rng);
     const ProvedSupportRegion region =
-        ProveSupportRegion(stance.Query(), {{1e-3, 12}, Eigen::Vector3d::Zero()}, &workspace);
+        ProveSupportRegion(stance.Query(), {{1e-3, 12}, {}}, &workspace);
     if (region.inner_W.empty()) continue;
     const auto& query = region.proof.lifted.query;
     const Vector3q up = region.proof.region.up;
@@ -237,16 +237,20 @@ TEST_CASE("Mass and a shift of everything change no proved margin") {
   }
 }
 
+TEST_CASE("Options given as braces ask for no acceleration") {
+  CHECK_FALSE(RegionOptions{{1e-4, 40}, {}}.acceleration_W);
+}
+
 TEST_CASE("An acceleration moves the region of a foot against it") {
   StabilityWorkspace workspace;
   Stance stance = Foot();
   stance.com = {0, 0, 2};
   RegionOptions options;
-  options.acceleration_W = {0, 9.81 / 64, 0};  // the zero-moment point moves by 2/64
+  options.acceleration_W = Eigen::Vector3d(0, 9.81 / 64, 0);  // the zero-moment point moves by 2/64
   const exact::Enclosure m = ProveComMargin(stance.Query(), options, &workspace).com_m;
   CHECK(m.lo == Approx(0.03125).margin(1e-10));
   CHECK(m.hi == Approx(0.03125).margin(1e-10));
-  options.acceleration_W = {0, 0, -9.81};
+  options.acceleration_W = Eigen::Vector3d(0, 0, -9.81);
   CHECK_THROWS_AS(ProveComMargin(stance.Query(), options, &workspace), Error);
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -77,6 +78,7 @@ struct Answer {
   Eigen::Vector3d com_W = Eigen::Vector3d::Zero();
 
   exact::Enclosure com_margin;
+  std::optional<numeric::ProvedMarginGradient> gradient;  ///< of com_margin; one box a contact
   exact::Enclosure force_margin;
   bool force_checked = false;  ///< else a float
   int sides = 4;               ///< of the pyramids of the force margin
@@ -102,6 +104,7 @@ void AskMargins(const numeric::StabilityQuery& query, Answer* answer) {
     if (contact.n_W.isZero(0)) return;
   }
   answer->com_margin = numeric::ProveComMargin(query, {}, &workspace).com_m;
+  answer->gradient = numeric::ProveComMarginGradient(query, {}, &workspace);
   answer->region = numeric::ProveSupportRegion(query, {kRegionOptions, {}}, &workspace);
   answer->distribution = numeric::DistributeForces(query, &workspace);
 }
@@ -123,7 +126,10 @@ Answer Ask(const Question& question) {
   answer.com_W = ladder.com_W();
   AskMargins(ladder.Query(), &answer);
   // The distribution is over the contacts in doubles; a later rung may have found others.
-  if (answer.contacts.size() != ladder.contacts().size()) answer.distribution.reset();
+  if (answer.contacts.size() != ladder.contacts().size()) {
+    answer.distribution.reset();
+    answer.gradient.reset();
+  }
   return answer;
 }
 
@@ -202,6 +208,19 @@ std::string Enclosed(const exact::Enclosure& x, double unit) {
   return "[" + Rounded(x.lo, unit, 8, false) + ", " + Rounded(x.hi, unit, 8, true) + "]";
 }
 
+/** The middle of a box in metres per metre, and how far it may be off. */
+std::string Enclosed(const exact::EnclosedVector& box) {
+  Eigen::Vector3d middle;
+  double off = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    // Shown to 1e-4; the rest counts as error.
+    const double x = std::round((box[k].lo + box[k].hi) * 5e3) * 1e-4 + 0.0;  // no -0
+    middle[static_cast<int>(k)] = x;
+    off = std::max({off, box[k].hi - x, x - box[k].lo});
+  }
+  return Vector(middle) + " within " + Rounded(off, 1, 2, true);
+}
+
 std::string ContactName(const Model& model, const numeric::Contact& contact) {
   return "\"" + model.robot.bodies[contact.body].name + "\" on \"" +
          model.objects[contact.object].name + "\"";
@@ -231,6 +250,22 @@ void PrintForces(const Answer& answer) {
     const auto at = static_cast<std::size_t>(f.contact);
     std::cout << "  " << Vector(f.weight * f.u_W) << " at "
               << Vector(answer.contacts[at].force_point_W()) << '\n';
+  }
+}
+
+/** How the com margin changes with each point that it depends on by more than is shown. */
+void PrintGradient(const Answer& answer) {
+  if (!answer.gradient) return;
+  std::cout << "gradient of the com margin, checked exactly (mm per mm)\n  "
+            << Enclosed(answer.gradient->com_W) << " as the centre of mass moves\n";
+  for (std::size_t i = 0; i < answer.contacts.size(); ++i) {
+    const exact::EnclosedVector& box = answer.gradient->contact_W[i];
+    const bool idle = std::all_of(box.begin(), box.end(), [](const exact::Enclosure& e) {
+      return e.lo > -1e-4 && e.hi < 1e-4;
+    });
+    if (idle) continue;
+    std::cout << "  " << Enclosed(box) << " as the contact at "
+              << Vector(answer.contacts[i].force_point_W()) << " moves\n";
   }
 }
 
@@ -269,6 +304,7 @@ void PrintText(const Question& question, const Answer& answer) {
       std::cout << (i ? " " : "") << Short(answer.stability.separator.y[i]);
     std::cout << "]\n";
   }
+  PrintGradient(answer);
   PrintRegion(answer.region);
 }
 
@@ -278,6 +314,22 @@ Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 /** The ends; infinite ones as null. */
 Json ToJson(const exact::Enclosure& x) { return Json::array({Number(x.lo), Number(x.hi)}); }
+
+Json ToJson(const exact::EnclosedVector& box) {
+  return Json::array({ToJson(box[0]), ToJson(box[1]), ToJson(box[2])});
+}
+
+/** Enclosures by component; null where nothing is proved. */
+Json GradientJson(const std::optional<numeric::ProvedMarginGradient>& gradient) {
+  if (!gradient) return nullptr;
+  Json json;
+  json["com"] = ToJson(gradient->com_W);
+  json["contacts"] = Json::array();
+  for (const exact::EnclosedVector& box : gradient->contact_W) {
+    json["contacts"].push_back(ToJson(box));
+  }
+  return json;
+}
 
 Json ForcesJson(const Answer& answer) {
   Json forces = Json::array();
@@ -309,6 +361,7 @@ void PrintJson(const Question& question, const Answer& answer) {
   json["com_m"] = ToJson(answer.com_W);
   json["com_margin_m"] = Number(answer.com_margin.lo);
   json["com_margin_enclosure_m"] = ToJson(answer.com_margin);
+  json["com_margin_gradient"] = GradientJson(answer.gradient);
   json["force_margin"] = Number(answer.force_margin.lo);
   json["force_margin_enclosure"] = nullptr;
   if (answer.force_checked) json["force_margin_enclosure"] = ToJson(answer.force_margin);
