@@ -95,6 +95,7 @@ void AskAll(const StabilityQuery& query) {
   Answered("force margin", [&] { ForceMargin(query); });
   Answered("forces", [&] { DistributeForces(query, &workspace); });
   Answered("proved margin", [&] { ProveComMargin(query, {}, &workspace); });
+  Answered("proved gradient", [&] { ProveComMarginGradient(query, {}, &workspace); });
   Answered("proved region", [&] { ProveSupportRegion(query, {}, &workspace); });
   Answered("proved force margin", [&] { ProveForceMargin(query); });
   Answered("stability", [&] { Stability(query, &workspace); });
@@ -125,6 +126,8 @@ TEST_CASE("Of a question that is not finite nothing is claimed") {
       CHECK_FALSE(
           Claimed([&] { return !FindSupportRegion(query, {}, &workspace).vertices_W.empty(); }));
       CHECK_FALSE(Claimed([&] { return ComMarginGradient(query, {}, &workspace).has_value(); }));
+      CHECK_FALSE(
+          Claimed([&] { return ProveComMarginGradient(query, {}, &workspace).has_value(); }));
       CHECK_FALSE(Claimed([&] { return ForceMargin(query) > 0; }));
       CHECK_FALSE(Claimed([&] {
         const auto margin = ProveForceMargin(query);
