@@ -5,9 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "cguide/exact/linear_algebra.h"
 #include "cguide/exact/wrench_polyhedra.h"
-#include "cguide/numeric/certified_facets.h"
+#include "cguide/numeric/proved_acceleration.h"
 #include "cguide/numeric/region_proof_internal.h"
 
 namespace cguide::numeric {
@@ -68,59 +67,10 @@ ProvedSupportRegion ProveSupportRegion(const StabilityQuery& query, const Region
   return result;
 }
 
-namespace {
-
-/** The generators as forces in doubles, where doubles hold them exactly. */
-std::optional<std::vector<AppliedForce>> AsDoubles(const exact::EquilibriumQuery& query,
-                                                   const exact::PyramidCone& cone) {
-  const auto to_double = [](const Vector3q& v, Eigen::Vector3d* out) {
-    for (int k = 0; k < 3; ++k) {
-      (*out)[k] = NearestDouble(v[k]);
-      if (!std::isfinite((*out)[k]) || Lift((*out)[k]) != v[k]) return false;
-    }
-    return true;
-  };
-  std::vector<AppliedForce> result;
-  for (const exact::ContactForce& force : cone.forces) {
-    AppliedForce a;
-    if (!to_double(query.contacts[force.contact].p, &a.p) || !to_double(force.f, &a.u)) {
-      return std::nullopt;
-    }
-    result.push_back(a);
-  }
-  return result;
-}
-
-/** The facets about the centre of mass c from those about the origin: with m_o = m_c + c x f a
- facet (h_f, h_m) becomes (h_f + h_m x c, h_m), because h_m.(c x f) = (h_m x c).f. */
-VectorXq MovedTo(const Vector3q& c, const VectorXq& h) {
-  VectorXq moved = h;
-  moved.head(3) += exact::Cross(Vector3q(h.tail(3)), c);
-  return moved;
-}
-
-/** All facets of the cone about the centre of mass: by CertifiedFacets where the generators are
- doubles, as axis-aligned contacts' are, else by the textbook. */
-exact::HalfspaceCone FacetsAboutCom(const exact::EquilibriumQuery& query,
-                                    const exact::PyramidCone& cone) {
-  const auto forces = AsDoubles(query, cone);
-  if (!forces) return exact::WrenchFacets(cone);
-  exact::HalfspaceCone facets = ExactFacets(*forces, CertifiedFacets(*forces));
-  for (VectorXq& h : facets.facets) h = MovedTo(query.com, h);
-  for (VectorXq& e : facets.equations) e = MovedTo(query.com, e);
-  return facets;
-}
-
-}  // namespace
-
 std::optional<exact::Enclosure> ProveForceMargin(const StabilityQuery& query, int max_generators) {
-  for (const Contact& contact : query.contacts) {
-    if (contact.n_W.isZero(0)) return std::nullopt;
-  }
-  const LiftedQuery lifted = LiftCertain(query);
-  const auto cone = exact::InscribedCone(lifted.query, query.generators);
-  if (static_cast<int>(cone.wrenches.size()) > max_generators) return std::nullopt;
-  return exact::ForceMargin(lifted.query, FacetsAboutCom(lifted.query, cone));
+  const auto facets = ProveWrenchFacets(query, max_generators);
+  if (!facets) return std::nullopt;
+  return exact::ForceMargin(LiftCertain(query).query, *facets);
 }
 
 }  // namespace cguide::numeric
