@@ -34,6 +34,7 @@ std::string CheckDistance(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckTriangles(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckClearance(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckContacts(ByteStream& in, bool thorough, Tally* tally);
+std::string CheckLimits(ByteStream& in, bool thorough, Tally* tally);
 
 /** Whether the slow checks of a near tie are to be made: of one case in `every`, as the tally
  stands, or of all where `every` is 1. */
@@ -60,6 +61,7 @@ std::string TiesOfClearance(std::mt19937_64& rng, long every, Tally* tally);
 /** Of TiesOfClearance half: balls, capsules and boxes, rotated, some with errors. */
 std::string TiesOfPlacedClearance(std::mt19937_64& rng, Tally* tally);
 std::string TiesOfContacts(std::mt19937_64& rng, long every, Tally* tally);
+std::string TiesOfLimits(std::mt19937_64& rng, long every, Tally* tally);
 
 struct Family {
   const char* name;
@@ -72,6 +74,7 @@ inline constexpr Family kFamilies[] = {{"cone", &CheckCone, &TiesOfCones},
                                        {"distance", &CheckDistance, &TiesOfDistance},
                                        {"triangles", &CheckTriangles, &TiesOfTriangles},
                                        {"clearance", &CheckClearance, &TiesOfClearance},
-                                       {"contacts", &CheckContacts, &TiesOfContacts}};
+                                       {"contacts", &CheckContacts, &TiesOfContacts},
+                                       {"limits", &CheckLimits, &TiesOfLimits}};
 
 }  // namespace cguide::fuzz
