@@ -114,6 +114,32 @@ std::vector<GoldHulls> ReadGoldHulls(const std::string& file) {
   return all;
 }
 
+namespace {
+
+exact::EquilibriumQuery EmptyQuery() {
+  exact::EquilibriumQuery query;
+  query.mass = 56;
+  query.gravity = {0, 0, ParseRational("-9.81")};
+  return query;
+}
+
+/** False where the line is none of a query. */
+bool ReadQueryLine(Line& line, exact::EquilibriumQuery* query) {
+  if (line.key() == "contact") {
+    exact::ExactContact contact;
+    contact.p = line.Numbers(3);
+    contact.cone.w = line.Numbers(3);
+    contact.cone.mu = line.Number();
+    query->contacts.push_back(contact);
+    return true;
+  }
+  if (line.key() != "com") return false;
+  query->com = line.Numbers(3);
+  return true;
+}
+
+}  // namespace
+
 std::vector<GoldStance> ReadGoldStances(const std::string& file) {
   std::vector<GoldStance> stances;
   GoldStance stance;
@@ -122,19 +148,11 @@ std::vector<GoldStance> ReadGoldStances(const std::string& file) {
       [&](const std::string& name) {
         stance = GoldStance{};
         stance.name = name;
-        stance.query.mass = 56;
-        stance.query.gravity = {0, 0, ParseRational("-9.81")};
+        stance.query = EmptyQuery();
       },
       [&](Line& line) {
-        if (line.key() == "contact") {
-          exact::ExactContact contact;
-          contact.p = line.Numbers(3);
-          contact.cone.w = line.Numbers(3);
-          contact.cone.mu = line.Number();
-          stance.query.contacts.push_back(contact);
-        } else if (line.key() == "com") {
-          stance.query.com = line.Numbers(3);
-        } else if (line.key() == "expect") {
+        if (ReadQueryLine(line, &stance.query)) return;
+        if (line.key() == "expect") {
           stance.expect = Choose<Verdict>(line, {{"holds", Verdict::kHolds},
                                                  {"fails", Verdict::kFails},
                                                  {"undecided", Verdict::kUndecided}});
@@ -150,6 +168,43 @@ std::vector<GoldStance> ReadGoldStances(const std::string& file) {
       },
       [&](Line&) { stances.push_back(stance); });
   return stances;
+}
+
+std::vector<GoldLimit> ReadGoldLimits(const std::string& file) {
+  std::vector<GoldLimit> limits;
+  GoldLimit limit;
+  std::optional<Vector3q> direction;
+  bool accelerates = false;
+  Walk(
+      file, "limit",
+      [&](const std::string& name) {
+        limit = GoldLimit{};
+        limit.name = name;
+        limit.query = EmptyQuery();
+        direction.reset();
+      },
+      [&](Line& line) {
+        if (ReadQueryLine(line, &limit.query)) return;
+        if (line.key() == "accelerate" || line.key() == "displace") {
+          accelerates = line.key() == "accelerate";
+          direction = line.Numbers(3);
+        } else if (line.key() == "expect") {
+          const std::string word = line.Word();
+          limit.expect = word == "none"        ? exact::ProgramStatus::kInfeasible
+                         : word == "unbounded" ? exact::ProgramStatus::kUnbounded
+                                               : exact::ProgramStatus::kOptimal;
+          if (limit.expect == exact::ProgramStatus::kOptimal) limit.value = line.NumberIn(word);
+        } else {
+          line.Refuse("unknown key \"" + line.key() + "\"");
+        }
+      },
+      [&](Line& line) {
+        if (!direction) line.Refuse("a limit has to accelerate or displace");
+        limit.family = accelerates ? exact::AccelerationFamily(limit.query, *direction)
+                                   : exact::DisplacementFamily(limit.query, *direction);
+        limits.push_back(limit);
+      });
+  return limits;
 }
 
 }  // namespace cguide::testing

@@ -11,6 +11,7 @@
 #include "cguide/exact/core/rational.h"
 #include "cguide/exact/core/shape.h"
 #include "cguide/exact/core/wrench.h"
+#include "cguide/exact/demand_limit.h"
 #include "cguide/exact/equilibrium.h"
 
 // Readers of fixtures/gold, whose README.md specifies the files. Numbers are read exactly.
@@ -45,6 +46,16 @@ struct GoldStance {
   std::optional<exact::StabilityReason> reason;
 };
 
+/** The largest multiple of a demand's direction; nothing to expect where there is none or no bound.
+ */
+struct GoldLimit {
+  std::string name;
+  exact::EquilibriumQuery query;
+  exact::DemandFamily family;
+  exact::ProgramStatus expect = exact::ProgramStatus::kOptimal;
+  Rational value;
+};
+
 /** Two sets of triangles, corners as doubles, and their squared distance. */
 struct GoldTriangles {
   struct Set {
@@ -75,6 +86,7 @@ struct GoldBodies {
 std::vector<GoldCone> ReadGoldCones(const std::string& file);
 std::vector<GoldHulls> ReadGoldHulls(const std::string& file);
 std::vector<GoldStance> ReadGoldStances(const std::string& file);
+std::vector<GoldLimit> ReadGoldLimits(const std::string& file);
 std::vector<GoldTriangles> ReadGoldTriangles(const std::string& file);
 std::vector<GoldBodies> ReadGoldBodies(const std::string& file);
 

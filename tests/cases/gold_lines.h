@@ -36,8 +36,8 @@ class Line {
     for (Rational& x : v) x = Number();
     return v;
   }
-  Rational Number() {
-    const std::string word = Word();
+  Rational Number() { return NumberIn(Word()); }
+  Rational NumberIn(const std::string& word) const {
     try {
       return ParseRational(word);
     } catch (const Error& e) {

@@ -162,6 +162,7 @@ std::vector<Reader> AllReaders() {
       {'1', "gold_cones", ".txt", [](Path f) { testing::ReadGoldCones(f.string()); }, {}},
       {'2', "gold_hulls", ".txt", [](Path f) { testing::ReadGoldHulls(f.string()); }, {}},
       {'3', "gold_stances", ".txt", [](Path f) { testing::ReadGoldStances(f.string()); }, {}},
+      {'6', "gold_limits", ".txt", [](Path f) { testing::ReadGoldLimits(f.string()); }, {}},
       {'4', "gold_triangles", ".txt", [](Path f) { testing::ReadGoldTriangles(f.string()); }, {}},
       {'5', "gold_bodies", ".txt", [](Path f) { testing::ReadGoldBodies(f.string()); }, {}},
   };

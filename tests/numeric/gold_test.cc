@@ -11,6 +11,7 @@
 #include "cguide/numeric/certified_facets.h"
 #include "cguide/numeric/cone_membership.h"
 #include "cguide/numeric/convex_distance.h"
+#include "cguide/numeric/demand_limit.h"
 #include "cguide/numeric/stability.h"
 
 namespace cguide::testing {
@@ -144,6 +145,26 @@ TEST_CASE("Every gold stance gets its expected verdict, and its proof") {
   }
 }
 
+TEST_CASE("Every gold limit has its value with pyramids of any sides, inside and outside") {
+  const auto limits = ReadGoldLimits(kFolder + "limits.txt");
+  REQUIRE(limits.size() >= 20);
+  const auto check = [](const GoldLimit& gold, const exact::PyramidCone& cone) {
+    for (const exact::DemandLimit& limit :
+         {exact::FindDemandLimit(cone, gold.family), numeric::FindDemandLimit(cone, gold.family)}) {
+      REQUIRE(limit.status == gold.expect);
+      if (gold.expect == exact::ProgramStatus::kOptimal) REQUIRE(limit.value == gold.value);
+      REQUIRE(exact::CheckDemandLimit(cone, gold.family, limit));
+    }
+  };
+  for (const GoldLimit& gold : limits) {
+    for (const int sides : {3, 4, 8, 16}) {
+      CAPTURE(gold.name, sides);
+      check(gold, exact::InscribedCone(gold.query, sides));
+      check(gold, *exact::CircumscribedCone(gold.query, sides));
+    }
+  }
+}
+
 TEST_CASE("Gold files that are not as specified are refused with their line") {
   const auto path = std::filesystem::temp_directory_path() / "cguide_gold_test.txt";
   const char* const bad[] = {"cone a\n force 1 2 3\nend\n",
@@ -160,6 +181,13 @@ TEST_CASE("Gold files that are not as specified are refused with their line") {
     REQUIRE_THROWS_AS(ReadGoldCones(path.string()), Error);
   }
   REQUIRE_THROWS_AS(ReadGoldHulls(path.string() + ".none"), Error);
+  for (const char* text : {"limit a\n com 0 0 1\n expect 1\nend\n",
+                           "limit a\n com 0 0 1\n displace 1 0 0\n expect some\nend\n",
+                           "limit a\n com 0 0 1\n displace 1 0\nend\n"}) {
+    std::ofstream(path) << text;
+    CAPTURE(text);
+    REQUIRE_THROWS_WITH(ReadGoldLimits(path.string()), Catch::Contains("cguide_gold_test.txt:"));
+  }
   std::filesystem::remove(path);
 }
 
