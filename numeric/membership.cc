@@ -26,13 +26,15 @@ StabilityQuery PlacedQuery(const World& world, const GuideWorkspace& workspace) 
   return query;
 }
 
-StabilityAnswer TestPlacedStability(const World& world, GuideWorkspace* workspace) {
+StabilityAnswer TestPlacedStability(const World& world, GuideWorkspace* workspace, Recall recall) {
   FindContacts(world, &workspace->geometry, &workspace->contacts);
-  return TryStability(PlacedQuery(world, *workspace), &workspace->stability);
+  const StabilityQuery query = PlacedQuery(world, *workspace);
+  return recall == Recall::kMemory ? TryStability(query, &workspace->memory, &workspace->stability)
+                                   : TryStability(query, &workspace->stability);
 }
 
 Membership TestConfiguration(const World& world, const Configuration& q, Space space,
-                             GuideWorkspace* workspace) {
+                             GuideWorkspace* workspace, Recall recall) {
   if (!WithinLimits(world.tree(), q)) return {Verdict::kFails, Obstruction::kLimits, {}};
   Place(world, q, &workspace->geometry);
   const FreeAnswer free = TestFree(world, &workspace->geometry);
@@ -42,7 +44,7 @@ Membership TestConfiguration(const World& world, const Configuration& q, Space s
     FindContacts(world, &workspace->geometry, &workspace->contacts);
     return TestContact(workspace->contacts);
   }
-  const Verdict stable = TestPlacedStability(world, workspace).verdict;
+  const Verdict stable = TestPlacedStability(world, workspace, recall).verdict;
   if (stable == Verdict::kHolds) return {};
   return {stable, Obstruction::kUnstable, {}};
 }

@@ -48,9 +48,11 @@ Verdict TestSampledEdge(const World& world, const Edge& edge, const SampledEdgeO
                         GuideWorkspace* workspace) {
   const int count = SampleCount(edge, options.step);
   Verdict worst = Verdict::kHolds;
+  workspace->memory.Forget();
   const auto test = [&](int i) {
     const Configuration q = Interpolate(edge, static_cast<double>(i) / count);
-    const Verdict verdict = TestConfiguration(world, q, options.space, workspace).verdict;
+    const Verdict verdict =
+        TestConfiguration(world, q, options.space, workspace, Recall::kMemory).verdict;
     if (verdict != Verdict::kHolds && worst != Verdict::kFails) worst = verdict;
     return verdict == Verdict::kHolds;
   };

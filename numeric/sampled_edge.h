@@ -14,7 +14,8 @@ struct SampledEdgeOptions {
 int SampleCount(const Edge& edge, double step);
 
 /** Tests the interior samples and the end of an edge, coarse ones first; the start is taken as
- tested. kHolds means that all samples hold, and nothing about the motion between them. */
+ tested. kHolds means that all samples hold, and nothing about the motion between them. Stability is
+ asked with workspace->memory, which forgets at the start: the answer is a function of the edge. */
 Verdict TestSampledEdge(const World& world, const Edge& edge, const SampledEdgeOptions& options,
                         GuideWorkspace* workspace);
 

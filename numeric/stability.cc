@@ -30,8 +30,8 @@ StabilityWorkspace::~StabilityWorkspace() = default;
 StabilityWorkspace::StabilityWorkspace(StabilityWorkspace&&) noexcept = default;
 StabilityWorkspace& StabilityWorkspace::operator=(StabilityWorkspace&&) noexcept = default;
 
-StabilityAnswer TryStability(const StabilityQuery& query, StabilityWorkspace* workspace) {
-  RequireRoundToNearest();
+StabilityAnswer AskSimplex(const StabilityQuery& query, StabilityWorkspace* workspace,
+                           Vector6d* deep) {
   StabilityAnswer answer;
   ScaledContacts& contacts = workspace->scratch->contacts;
   Balance& balance = workspace->scratch->balance;
@@ -40,10 +40,10 @@ StabilityAnswer TryStability(const StabilityQuery& query, StabilityWorkspace* wo
   end.count = -1;
   Vector6d y;
   Proposal proposal =
-      SolveStability(contacts, contacts.num_certain, &balance, &y, &answer.pivots, &end);
+      SolveStability(contacts, contacts.num_certain, &balance, &y, &answer.pivots, &end, deep);
   if (proposal == Proposal::kNone && contacts.num_certain < contacts.count) {
     // The certain contacts do not carry the robot; do all that are possible leave it unstable?
-    proposal = SolveStability(contacts, contacts.count, &balance, &y, &answer.pivots, &end);
+    proposal = SolveStability(contacts, contacts.count, &balance, &y, &answer.pivots, &end, deep);
   }
   if (proposal == Proposal::kInterior) {
     answer.verdict = Verdict::kHolds;
@@ -55,6 +55,11 @@ StabilityAnswer TryStability(const StabilityQuery& query, StabilityWorkspace* wo
     answer.separator.y = y;
   }
   return answer;
+}
+
+StabilityAnswer TryStability(const StabilityQuery& query, StabilityWorkspace* workspace) {
+  RequireRoundToNearest();
+  return AskSimplex(query, workspace, nullptr);
 }
 
 }  // namespace cguide::numeric

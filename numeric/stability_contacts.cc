@@ -24,15 +24,6 @@ double ReducedFriction(double mu, double root, double error) {
   return step <= 0.5 * mu * mu ? mu - step / mu : 0;
 }
 
-void Resize(int n, ScaledContacts* c) {
-  for (auto* v : {&c->rx, &c->ry, &c->rz, &c->nx, &c->ny, &c->nz, &c->mu, &c->true_mu,
-                  &c->normal_error, &c->arm_error}) {
-    v->resize(n);
-  }
-  c->index.resize(n);
-  c->count = n;
-}
-
 // Stores contact i of the query at slot k, arms not scaled yet; false where it is not finite.
 //
 // The force point x - r n takes a product and a difference, the arm one more difference; every
@@ -58,14 +49,18 @@ bool Store(const StabilityQuery& query, int i, int k, ScaledContacts* c) {
          contact.error >= 0 && query.com_error >= 0;
 }
 
-void ScaleArms(ScaledContacts* c) {
+double LargestArm(const ScaledContacts& c) {
   double largest = 0;
-  for (int k = 0; k < c->count; ++k) {
-    largest = std::max({largest, std::abs(c->rx[k]), std::abs(c->ry[k]), std::abs(c->rz[k])});
+  for (int k = 0; k < c.count; ++k) {
+    largest = std::max({largest, std::abs(c.rx[k]), std::abs(c.ry[k]), std::abs(c.rz[k])});
   }
-  // 2^(e+1) > largest: scaled components are below 1 and, as powers of two divide, exact.
-  c->length = largest > 0 ? std::ldexp(1.0, std::ilogb(largest) + 1) : 1;
-  const double inverse = 1 / c->length;
+  return largest;
+}
+
+// Powers of two divide exactly.
+void ScaleArms(double length, ScaledContacts* c) {
+  c->length = length;
+  const double inverse = 1 / length;
   for (int k = 0; k < c->count; ++k) {
     c->rx[k] *= inverse, c->ry[k] *= inverse, c->rz[k] *= inverse;
     c->arm_error[k] *= inverse;
@@ -76,7 +71,39 @@ bool IsUsable(const Contact& contact) {
   return contact.certain && NormalError(contact) <= kUsableNormalError;
 }
 
+// The wrench to be balanced; false where it is none.
+bool SetDirection(const StabilityQuery& query, ScaledContacts* c) {
+  const double g = query.gravity_W.lpNorm<Eigen::Infinity>();
+  if (!(g > 0) || !std::isfinite(g) || !query.gravity_W.allFinite()) return false;
+  if (!(query.mass > 0) || !std::isfinite(query.mass)) return false;
+  if (!query.com_W.allFinite()) return false;
+  const int exponent = std::ilogb(g);
+  for (int j = 0; j < 3; ++j) c->v_f[j] = std::ldexp(-query.gravity_W[j], -exponent);
+  c->v_scale = std::ldexp(query.mass, exponent);
+  return true;
+}
+
+void ReduceFriction(ScaledContacts* c) {
+  double mu = -1, root = 1;
+  for (int k = 0; k < c->count; ++k) {
+    if (c->true_mu[k] != mu) {
+      mu = c->true_mu[k];
+      root = std::sqrt(1 + mu * mu);
+    }
+    c->mu[k] = ReducedFriction(mu, root, c->normal_error[k] + 32 * kUnit);
+  }
+}
+
 }  // namespace
+
+void Resize(int n, ScaledContacts* c) {
+  for (auto* v : {&c->rx, &c->ry, &c->rz, &c->nx, &c->ny, &c->nz, &c->mu, &c->true_mu,
+                  &c->normal_error, &c->arm_error}) {
+    v->resize(n);
+  }
+  c->index.resize(n);
+  c->count = n;
+}
 
 // With w = x - y stored and w* real, |w - w*| <= 2e and |w*| >= |d| - e: the directions of two
 // vectors a, b differ by at most 2|a - b|/(|a| + |b|) <= 4e/(2|d| - 4e).
@@ -88,13 +115,7 @@ double NormalError(const Contact& contact) {
 }
 
 bool ScaleContacts(const StabilityQuery& query, ScaledContacts* c) {
-  const double g = query.gravity_W.lpNorm<Eigen::Infinity>();
-  if (!(g > 0) || !std::isfinite(g) || !query.gravity_W.allFinite()) return false;
-  if (!(query.mass > 0) || !std::isfinite(query.mass)) return false;
-  if (!query.com_W.allFinite()) return false;
-  const int exponent = std::ilogb(g);
-  for (int j = 0; j < 3; ++j) c->v_f[j] = std::ldexp(-query.gravity_W[j], -exponent);
-  c->v_scale = std::ldexp(query.mass, exponent);
+  if (!SetDirection(query, c)) return false;
   const int n = static_cast<int>(query.contacts.size());
   Resize(n, c);
   int front = 0, back = n;
@@ -102,15 +123,24 @@ bool ScaleContacts(const StabilityQuery& query, ScaledContacts* c) {
     if (!Store(query, i, IsUsable(query.contacts[i]) ? front++ : --back, c)) return false;
   }
   c->num_certain = front;
-  double mu = -1, root = 1;
-  for (int k = 0; k < n; ++k) {
-    if (c->true_mu[k] != mu) {
-      mu = c->true_mu[k];
-      root = std::sqrt(1 + mu * mu);
-    }
-    c->mu[k] = ReducedFriction(mu, root, c->normal_error[k] + 32 * kUnit);
+  ReduceFriction(c);
+  // 2^(e+1) > largest: scaled components are below 1.
+  const double largest = LargestArm(*c);
+  ScaleArms(largest > 0 ? std::ldexp(1.0, std::ilogb(largest) + 1) : 1, c);
+  return true;
+}
+
+bool ScaleSome(const StabilityQuery& query, std::span<const int> which, double length,
+               ScaledContacts* c) {
+  if (!SetDirection(query, c)) return false;
+  Resize(static_cast<int>(which.size()), c);
+  for (int k = 0; k < c->count; ++k) {
+    if (!IsUsable(query.contacts[which[k]]) || !Store(query, which[k], k, c)) return false;
   }
-  ScaleArms(c);
+  c->num_certain = c->count;
+  if (!(LargestArm(*c) < length)) return false;
+  ReduceFriction(c);
+  ScaleArms(length, c);
   return true;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "cguide/numeric/friction.h"
@@ -35,9 +36,18 @@ struct ScaledContacts {
   Eigen::Vector3d normal(int i) const { return {nx[i], ny[i], nz[i]}; }
 };
 
+/** Makes room for n contacts and counts them. */
+void Resize(int n, ScaledContacts* contacts);
+
 /** Fills `contacts`. @return false where a number is not finite, mass is not positive or gravity is
  zero. Bounds are derived in stability_contacts.cc. */
 bool ScaleContacts(const StabilityQuery& query, ScaledContacts* contacts);
+
+/** Fills `contacts` with those of the query alone that `which` names, in units of `length`, a power
+ of two. What ProveInterior proves of them holds for all. @return false also where one of them is of
+ no use for a balance or an arm is not below `length`. */
+bool ScaleSome(const StabilityQuery& query, std::span<const int> which, double length,
+               ScaledContacts* contacts);
 
 /** A force direction at a contact and its wrench. */
 struct Generator {
@@ -81,14 +91,19 @@ struct SimplexEnd {
 
 /** Proposes a balance over the first `count` contacts or a separating y, asking the certificates
  above as it goes, so that kInterior and kOutside are proven; where it is neither, says where it
- stopped. */
+ stopped, and where it is kOutside, a y with more room in `deep`. */
 Proposal SolveStability(const ScaledContacts& contacts, int count, Balance* balance, Vector6d* y,
-                        int* pivots, SimplexEnd* end = nullptr);
+                        int* pivots, SimplexEnd* end = nullptr, Vector6d* deep = nullptr);
 
 struct StabilityWorkspace::Scratch {
   ScaledContacts contacts;
   Balance balance;
   SimplexEnd end;  ///< of the last question
 };
+
+/** TryStability; where it is kFails and `deep` is asked for, that is a separating wrench with more
+ room, of scaled arms. */
+StabilityAnswer AskSimplex(const StabilityQuery& query, StabilityWorkspace* workspace,
+                           Vector6d* deep);
 
 }  // namespace cguide::numeric

@@ -23,6 +23,7 @@ constexpr double kRankTolerance = 1e-9;    // a pivot below this counts as depen
 constexpr double kPivotTolerance = 1e-11;  // smallest divisor in the ratio test
 constexpr double kInSpanTolerance = 1e-13;
 constexpr double kRoom[] = {0x1p-8, 0x1p-17, 0x1p-26, 0x1p-33, 0x1p-37, 0x1p-40, 0x1p-42};  // s
+constexpr double kDeepRoom[] = {0x1p-6, 0x1p-5, 0x1p-4, 0x1p-3};
 constexpr int kMaxPivots = 120;
 constexpr double kBaseWeight[6] = {1, 0.8, 1.2, 0.9, 1.1, 0.7};
 
@@ -414,6 +415,18 @@ Proposal StabilitySimplex::Run() {
   return Proposal::kNone;
 }
 
+// More room s on all cones as long as y.v stays above s too.
+Vector6d StabilitySimplex::Deepen() {
+  Vector6d deepest = y_;
+  for (const double s : kDeepRoom) {
+    Step step = Step::kMoved;
+    while (step == Step::kMoved && pivots_ < kMaxPivots) step = Iterate(s);
+    if (step != Step::kOptimal || !(y_.head<3>().dot(c_.v_f) > s)) break;
+    deepest = y_;
+  }
+  return deepest;
+}
+
 void StabilitySimplex::ReportEnd(SimplexEnd* end) const {
   end->count = count_;
   end->length = c_.length;
@@ -425,12 +438,13 @@ void StabilitySimplex::ReportEnd(SimplexEnd* end) const {
 }
 
 Proposal SolveStability(const ScaledContacts& contacts, int count, Balance* balance, Vector6d* y,
-                        int* pivots, SimplexEnd* end) {
+                        int* pivots, SimplexEnd* end, Vector6d* deep) {
   StabilitySimplex simplex(contacts, count, balance);
   const Proposal proposal = simplex.Run();
   if (end != nullptr && proposal == Proposal::kNone) simplex.ReportEnd(end);
   *y = simplex.y();
   *pivots += simplex.pivots();
+  if (deep != nullptr && proposal == Proposal::kOutside) *deep = simplex.Deepen();
   return proposal;
 }
 

@@ -29,6 +29,9 @@ class StabilitySimplex {
   /** The whole question, certificates included. */
   Proposal Run();
 
+  /** After kOutside: a y that separates with more room, for neighbouring questions. */
+  Vector6d Deepen();
+
   void ReportEnd(SimplexEnd* end) const;
 
   /** Pieces of it, for the margins. Prepare finds the base and the first feasible point (false

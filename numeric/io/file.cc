@@ -154,6 +154,21 @@ std::string Quote(std::string_view text) {
   return quoted + "\"";
 }
 
+std::vector<std::string_view> CutAtCommas(std::string_view line) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const std::size_t comma = line.find(',');
+    std::string_view field = line.substr(0, comma);
+    const std::size_t begin = field.find_first_not_of(" \t\r");
+    field = begin == std::string_view::npos
+                ? std::string_view()
+                : field.substr(begin, field.find_last_not_of(" \t\r") - begin + 1);
+    fields.push_back(field);
+    if (comma == std::string_view::npos) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
 double ParseDouble(std::string_view text, std::string* why) {
   why->clear();
   // from_chars knows no leading plus; a sign after it would be a second one.

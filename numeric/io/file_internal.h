@@ -34,6 +34,9 @@ std::string Join(const std::vector<std::string>& items, std::size_t limit = 40);
 /** A short printable form of user text for a message: quoted, control bytes replaced, cut. */
 std::string Quote(std::string_view text);
 
+/** One line cut at the commas, blanks around the fields removed. */
+std::vector<std::string_view> CutAtCommas(std::string_view line);
+
 /** The double nearest to the decimal text, which must be a finite number and nothing else. No
  locale. Empty string in `*why` on success, else the reason ("is not a number", "is too large ...").
  */

@@ -11,22 +11,6 @@ namespace {
 constexpr std::size_t kMaxCsvBytes = 256u << 20;
 constexpr std::array<const char*, 7> kRoot = {"x", "y", "z", "qx", "qy", "qz", "qw"};
 
-/** One line cut at the commas, blanks around the fields removed. */
-std::vector<std::string_view> Fields(std::string_view line) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    std::string_view field = line.substr(0, comma);
-    const std::size_t begin = field.find_first_not_of(" \t\r");
-    field = begin == std::string_view::npos
-                ? std::string_view()
-                : field.substr(begin, field.find_last_not_of(" \t\r") - begin + 1);
-    fields.push_back(field);
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 class CsvReader {
  public:
   CsvReader(const std::filesystem::path& file, const Robot& robot)
@@ -45,9 +29,9 @@ class CsvReader {
       ++line_;
       if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
       if (places_.empty()) {
-        ReadHeader(Fields(line));
+        ReadHeader(CutAtCommas(line));
       } else {
-        path.waypoints.push_back(ReadRow(Fields(line)));
+        path.waypoints.push_back(ReadRow(CutAtCommas(line)));
       }
     }
     if (places_.empty())

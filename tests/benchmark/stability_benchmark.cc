@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "cguide/numeric/double_description.h"
 #include "cguide/numeric/friction.h"
 #include "cguide/numeric/margins.h"
 #include "tests/benchmark/exact_stage_section.h"
+#include "tests/benchmark/memory_section.h"
 #include "tests/benchmark/timing.h"
 #include "tests/numeric/stability_cases.h"
 #include "tests/peers/glpk_peer.h"
@@ -95,10 +97,11 @@ void Report(int patches) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // With an argument the exact stage alone.
+  // With an argument that section alone: "exact" or "memory".
+  const std::string section = argc > 1 ? argv[1] : "";
   for (const int patches : {1, 2, 3, 4, 8}) {
-    if (argc == 1) Report(patches);
+    if (section.empty()) Report(patches);
   }
-  (void)argv;
-  cguide::benchmark_tools::ReportStabilityExactStage(stdout);
+  if (section != "exact") cguide::benchmark_tools::ReportStabilityMemory(stdout);
+  if (section != "memory") cguide::benchmark_tools::ReportStabilityExactStage(stdout);
 }

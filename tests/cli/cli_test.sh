@@ -394,6 +394,37 @@ section_boundary() {
   says_not '"forces": []'
 }
 
+section_coms() {
+  # The box stands on a rectangle of 250 by 125 mm.
+  box_on_edge "[[-0.125, -0.0625, 0], [-0.125, 0.0625, 0], [0.125, -0.0625, 0], [0.125, 0.0625, 0]]"
+  printf '0.01,0.02,0.5\n\n 0.02, 0.02,0.5\r\n' >"$work/inside.csv"
+  expect 0 stability "$work/box.yaml" --posture upright --coms "$work/inside.csv"
+  says "2 centres of mass, 2 statically stable, 0 not, 0 undecided"
+  says "[0.02 0.02 0.5] stable"
+  printf 'x,y,z\n0.01,0,0.5\n0.125,0,0.5\n' >"$work/coms.csv"
+  expect 4 stability "$work/box.yaml" --posture upright --coms "$work/coms.csv"
+  says "undecided: "
+  printf '0.2,0,0.5\n' >>"$work/coms.csv"
+  expect 1 stability "$work/box.yaml" --posture upright --coms "$work/coms.csv" --format json
+  says '"schema": "cguide-stability-coms/1"'
+  says '"stable": 1'
+  says '"unstable": 1'
+  says '"undecided": 1'
+  says '"verdict": "unstable"'
+  expect 3 stability "$work/box.yaml" --coms "$work/absent.csv"
+  says absent.csv
+  local line
+  for line in 1,2 1,2,3,4 1,2,x 1,2,nan 1,2,1e7 "1;2;3" z,y,x; do
+    printf '0,0,0.5\n%s\n' "$line" >"$work/bad.csv"
+    expect 3 stability "$work/box.yaml" --posture upright --coms "$work/bad.csv"
+    says "bad.csv:2: "
+    says "write x,y,z in metres, one a line"
+  done
+  printf 'x,y,z\n' >"$work/bad.csv"
+  expect 3 stability "$work/box.yaml" --posture upright --coms "$work/bad.csv"
+  says "there is no centre of mass"
+}
+
 section_bad_input() {
   # A file name of any bytes is no reason to fail; what is not UTF-8 is replaced in the reports for programs.
   local odd=$work/$'odd\xff.json'

@@ -8,6 +8,7 @@
 #include <new>
 
 #include "cguide/numeric/stability_contacts_internal.h"
+#include "cguide/numeric/stability_memory.h"
 #include "tests/numeric/stability_cases.h"
 
 namespace {
@@ -168,6 +169,22 @@ TEST_CASE("a warm workspace allocates nothing") {
   }
   CHECK(allocations == before);
   CHECK(holds > 10);
+}
+
+TEST_CASE("a warm memory allocates nothing") {
+  Rng rng(151);
+  Stance stance = RandomStance(3, rng);
+  StabilityWorkspace workspace;
+  StabilityMemory memory;
+  TryStability(stance.Query(), &memory, &workspace);
+  TryStability(stance.Query(), &memory, &workspace);
+  const long before = allocations;
+  for (int i = 0; i < 100; ++i) {
+    stance.com[0] += 0.01;
+    TryStability(stance.Query(), &memory, &workspace);
+  }
+  CHECK(allocations == before);
+  CHECK(memory.answered() > 80);
 }
 
 }  // namespace

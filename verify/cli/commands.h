@@ -85,7 +85,8 @@ struct StabilityArguments {
   std::string problem;
   std::string posture;  ///< "start", "goal" or a posture's name at the start's root pose
   std::string guide;
-  double at = -1;  ///< edge index + s along the guide
+  double at = -1;    ///< edge index + s along the guide
+  std::string coms;  ///< CSV file of centres of mass to ask instead of the configuration's own
   std::string format = "text";
 };
 

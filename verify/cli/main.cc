@@ -210,6 +210,8 @@ CLI::App* AddStability(CLI::App& app, StabilityArguments* a) {
   c->add_option("--guide", a->guide, "Take the configuration from a guide or a foreign path");
   c->add_option("--at", a->at, "Edge index plus s, as in 12.5")
       ->check(Within(0, kLargest, "number from 0 on"));
+  c->add_option("--coms", a->coms,
+                "Ask of each centre of mass x,y,z (m, in W) in a CSV file, over the same contacts");
   c->add_option("--format", a->format, "Form of the report")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();

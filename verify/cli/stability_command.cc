@@ -12,6 +12,7 @@
 #include "cguide/numeric/margins.h"
 #include "cguide/numeric/membership.h"
 #include "cguide/numeric/proved_margins.h"
+#include "cguide/verify/cli/com_positions.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
 #include "cguide/verify/cli/subject.h"
@@ -401,6 +402,12 @@ int RunStability(const StabilityArguments& arguments) {
     return kExitUsage;
   }
   const Question question = ReadQuestion(arguments);
+  if (!arguments.coms.empty()) {
+    const ComReport report = AskComs(question.problem, question.q, ReadComs(arguments.coms));
+    arguments.format == "json" ? PrintJson(question.what, report)
+                               : PrintText(question.what, report);
+    return ExitCodeOf(report);
+  }
   const Answer answer = Ask(question);
   arguments.format == "json" ? PrintJson(question, answer) : PrintText(question, answer);
   switch (answer.stability.verdict) {
