@@ -11,6 +11,8 @@
 // The stored contacts of a question of static stability over the integers, for its exact stage.
 namespace cguide::numeric {
 
+struct RoundBuffers;  // round_simplex_internal.h
+
 /** A revolution cone: u with s = u.w >= 0 and s^2 (mu_den + mu_num) >= |u|^2 ww mu_den. */
 struct IntegerCone {
   Integer3 w;          ///< the normal, any length
@@ -70,6 +72,7 @@ std::optional<exact::StabilityResult> DecideByParallelForces(const IntegerEquili
 
 /** Decides from where the simplex on doubles ended, or gives up: round_simplex.cc. Rank 6 alone. */
 std::optional<exact::StabilityResult> DecideBySimplex(const IntegerEquilibrium& e,
-                                                      const SimplexEnd& found);
+                                                      const SimplexEnd& found,
+                                                      RoundBuffers* buffers);
 
 }  // namespace cguide::numeric

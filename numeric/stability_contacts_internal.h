@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "cguide/numeric/friction.h"
@@ -85,10 +86,13 @@ struct SimplexEnd {
 Proposal SolveStability(const ScaledContacts& contacts, int count, Balance* balance, Vector6d* y,
                         int* pivots, SimplexEnd* end = nullptr);
 
+struct RoundBuffers;  // round_simplex_internal.h
+
 struct StabilityWorkspace::Scratch {
   ScaledContacts contacts;
   Balance balance;
-  SimplexEnd end;  ///< of the last question
+  SimplexEnd end;                       ///< of the last question
+  std::shared_ptr<RoundBuffers> exact;  ///< of the exact stage, once it was asked
 };
 
 }  // namespace cguide::numeric
