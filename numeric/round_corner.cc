@@ -21,7 +21,7 @@ Vector6d Scaled(const IntegerEquilibrium& e, double length, const Integer6& y) {
   long exponent[6], highest = std::numeric_limits<long>::min();
   for (int k = 0; k < 6; ++k) {
     significand[k] = mpz_get_d_2exp(&exponent[k], y[k].get_mpz_t());
-    if (k >= 3) exponent[k] -= shift;
+    if (k >= 3) exponent[k] += shift;
     if (y[k] != 0) highest = std::max(highest, exponent[k]);
   }
   Vector6d result;

@@ -11,8 +11,10 @@ DrivenContact FindDriven(const IntegerEquilibrium& e, const Integer3& y_f, const
   DrivenContact worst;
   double highest = 0;
   long scale = std::numeric_limits<long>::min();
+  const DrivenFilter filter(e, y_f, y_m);
   for (std::size_t i = 0; i < e.contacts.size(); ++i) {
     const int contact = static_cast<int>(i);
+    if (filter.IsFarFromDriven(contact)) continue;
     const IntegerCone& cone = e.cones[static_cast<std::size_t>(e.contacts[i].cone)];
     const Integer3 g = SeenAt(e, contact, y_f, y_m);
     long exponent;

@@ -7,9 +7,11 @@
 #include <vector>
 
 namespace cguide::peers {
+namespace {
 
-bool CgalQpMember(std::span<const Eigen::Matrix<double, 6, 1>> generators,
-                  const Eigen::Matrix<double, 6, 1>& v) {
+template <typename Number>
+bool IsMember(std::span<const Eigen::Matrix<double, 6, 1>> generators,
+              const Eigen::Matrix<double, 6, 1>& v) {
   std::vector<const double*> columns;
   columns.reserve(generators.size());
   for (const auto& a : generators) columns.push_back(a.data());
@@ -17,7 +19,19 @@ bool CgalQpMember(std::span<const Eigen::Matrix<double, 6, 1>> generators,
       static_cast<int>(generators.size()), 6, columns.data(), v.data(),
       CGAL::Const_oneset_iterator<CGAL::Comparison_result>(CGAL::EQUAL),
       CGAL::Const_oneset_iterator<double>(0));
-  return !CGAL::solve_nonnegative_linear_program(program, CGAL::Gmpzf()).is_infeasible();
+  return !CGAL::solve_nonnegative_linear_program(program, Number()).is_infeasible();
+}
+
+}  // namespace
+
+bool CgalQpMember(std::span<const Eigen::Matrix<double, 6, 1>> generators,
+                  const Eigen::Matrix<double, 6, 1>& v) {
+  return IsMember<CGAL::Gmpzf>(generators, v);
+}
+
+bool CgalQpMemberInDoubles(std::span<const Eigen::Matrix<double, 6, 1>> generators,
+                           const Eigen::Matrix<double, 6, 1>& v) {
+  return IsMember<double>(generators, v);
 }
 
 }  // namespace cguide::peers

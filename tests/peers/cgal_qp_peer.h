@@ -12,4 +12,9 @@ namespace cguide::peers {
 bool CgalQpMember(std::span<const Eigen::Matrix<double, 6, 1>> generators,
                   const Eigen::Matrix<double, 6, 1>& v);
 
+/** The same with double in place of the exact number type: quick, and without any promise by CGAL.
+ */
+bool CgalQpMemberInDoubles(std::span<const Eigen::Matrix<double, 6, 1>> generators,
+                           const Eigen::Matrix<double, 6, 1>& v);
+
 }  // namespace cguide::peers
