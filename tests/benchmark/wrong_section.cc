@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -101,8 +102,12 @@ peers::FacetList QhullFacetsOf(const std::vector<Vector6d>& generators,
   }
   peers::FacetList list;
   list.failed = exact.facets.empty() || !exact.equations.empty();
-  for (const Vector6d& a : generators) list.failed |= !(w.dot(a) > 1e-9 * a.norm());
-  if (!list.failed) list.failed = !peers::QhullFacets(generators, w, &list.facets);
+  std::vector<Vector6d> rays;
+  for (const Vector6d& a : generators) {
+    if (!a.isZero(0)) rays.push_back(a);
+  }
+  for (const Vector6d& a : rays) list.failed |= !(w.dot(a) > 1e-9 * a.norm());
+  if (!list.failed) list.failed = !peers::QhullFacets(rays, w, &list.facets);
   return list;
 }
 
@@ -146,7 +151,8 @@ class Judge {
     note(kGlpkFine, peers::GlpkMember(generators, v, {.tolerance = 1e-12}), false);
     note(kCdd, InsideFacets(subject.cdd, v), subject.cdd.failed);
     note(kQhull, InsideFacets(subject.qhull, v), subject.qhull.failed);
-    note(kCgalDouble, peers::CgalQpMemberInDoubles(generators, v), false);
+    const std::optional<bool> in_doubles = peers::CgalQpMemberInDoubles(generators, v);
+    note(kCgalDouble, in_doubles.value_or(false), !in_doubles);
     note(kCgal, peers::CgalQpMember(generators, v), false);
     note(kPpl, InsideFacets(subject.ppl, v), false);
     const auto fast = TryConeMembership(subject.cone, v, &workspace_);
@@ -241,6 +247,7 @@ long ReportWrongMembership(std::FILE* out) {
   std::fprintf(out, "| family | asked |");
   for (const char* name : kNames) std::fprintf(out, " %s |", name);
   std::fprintf(out, "\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+  std::fflush(out);  // a peer forks
   Judge judge;
   std::vector<Row> rows{OrdinaryStances(&judge)};
   for (const Row& row : NearTies(&judge)) rows.push_back(row);

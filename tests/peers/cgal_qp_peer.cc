@@ -3,6 +3,9 @@
 #include <CGAL/Gmpzf.h>
 #include <CGAL/QP_functions.h>
 #include <CGAL/QP_models.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <vector>
 
@@ -29,9 +32,19 @@ bool CgalQpMember(std::span<const Eigen::Matrix<double, 6, 1>> generators,
   return IsMember<CGAL::Gmpzf>(generators, v);
 }
 
-bool CgalQpMemberInDoubles(std::span<const Eigen::Matrix<double, 6, 1>> generators,
-                           const Eigen::Matrix<double, 6, 1>& v) {
-  return IsMember<double>(generators, v);
+std::optional<bool> CgalQpMemberInDoubles(std::span<const Eigen::Matrix<double, 6, 1>> generators,
+                                          const Eigen::Matrix<double, 6, 1>& v) {
+  const pid_t child = fork();
+  if (child < 0) return std::nullopt;
+  if (child == 0) {
+    const itimerval limit{{0, 0}, {0, 50000}};
+    setitimer(ITIMER_VIRTUAL, &limit, nullptr);  // ends the process
+    _exit(IsMember<double>(generators, v) ? 1 : 0);
+  }
+  int status = 0;
+  if (waitpid(child, &status, 0) != child || !WIFEXITED(status)) return std::nullopt;
+  if (WEXITSTATUS(status) > 1) return std::nullopt;
+  return WEXITSTATUS(status) == 1;
 }
 
 }  // namespace cguide::peers
