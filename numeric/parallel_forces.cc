@@ -181,7 +181,9 @@ class ParallelForces {
     if (support.place == Support::Place::kInside) return Hold(support);
     const bool grazing = std::find(side_.begin(), side_.end(), 0) != side_.end();
     if (grazing) support = SupportFinder(Points(0)).Find();
-    if (support.place == Support::Place::kOutside ? Fails(support) : Ties(support)) return result_;
+    if (support.place == Support::Place::kOutside ? Fails(support) : Ties(support)) {
+      return std::move(result_);
+    }
     return std::nullopt;
   }
 
@@ -270,7 +272,7 @@ class ParallelForces {
       if (!Split(contact, Share(support, weight))) return std::nullopt;
     }
     result_.verdict = Verdict::kHolds;
-    return result_;
+    return std::move(result_);
   }
 
   bool Separate(const Integer3& y_f, const Integer3& y_m, int gain) {

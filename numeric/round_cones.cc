@@ -1,5 +1,7 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cguide/exact/core/rational.h"
 #include "cguide/numeric/dyadic_internal.h"
@@ -112,7 +114,10 @@ bool LiftEquilibrium(const StabilityQuery& query, const ScaledContacts& scaled, 
     const Contact& contact = query.contacts[scaled.index[i]];
     IntegerEquilibrium::Contact& lifted = e->contacts[static_cast<std::size_t>(i)];
     SetVector(contact.force_point_W(), e->unit, &lifted.arm);
-    for (int k = 0; k < 3; ++k) lifted.arm[k] -= com[k];
+    for (int k = 0; k < 3; ++k) {
+      lifted.arm[k] -= com[k];
+      lifted.r[k] = lifted.arm[k].get_d();
+    }
     if (last == nullptr || !SameCone(*last, contact)) {
       if (!LiftCone(contact, &e->cones.emplace_back())) return false;
     }
@@ -157,13 +162,54 @@ bool IsNeverDriven(const IntegerCone& cone, const Integer3& g) {
 
 Integer3 SeenAt(const IntegerEquilibrium& e, int contact, const Integer3& y_f,
                 const Integer3& y_m) {
-  Integer3 g = Cross(y_m, e.contacts[static_cast<std::size_t>(contact)].arm);
-  for (int k = 0; k < 3; ++k) g[k] += y_f[k];
+  const Integer3& arm = e.contacts[static_cast<std::size_t>(contact)].arm;
+  Integer3 g = y_f;
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    mpz_addmul(g[k].get_mpz_t(), y_m[i].get_mpz_t(), arm[j].get_mpz_t());
+    mpz_submul(g[k].get_mpz_t(), y_m[j].get_mpz_t(), arm[i].get_mpz_t());
+  }
   return g;
 }
 
+// The larger of y_f and y_m times the longest arm is brought near 1; what is smaller by 2^-1000 is
+// lost, far below the bound.
+DrivenFilter::DrivenFilter(const IntegerEquilibrium& e, const Integer3& y_f, const Integer3& y_m)
+    : e_(e) {
+  double reach = 1;
+  for (const IntegerEquilibrium::Contact& c : e.contacts) {
+    reach = std::max(reach, c.r.lpNorm<Eigen::Infinity>());
+  }
+  const long arm = std::ilogb(reach);
+  long f, m;
+  y_f_ = ToDoubles(y_f, &f);
+  y_m_ = ToDoubles(y_m, &m);
+  const bool forces = y_f_.isZero(0), moments = y_m_.isZero(0);
+  const long top = std::max(forces ? m + arm : f, moments ? f : m + arm);
+  y_f_ *= std::ldexp(1.0, static_cast<int>(forces ? 0 : std::max(f - top, -1000L)));
+  y_m_ *= std::ldexp(1.0, static_cast<int>(moments ? 0 : std::max(m - top, -1000L)));
+}
+
+// With S = |y_f| + 2 |y_m| |r| in largest entries, an entry of g = y_f + y_m x r is off by 5.1 u of
+// its products (2 u of either factor, u of the product), 2 u of y_f and u of two sums: by 8 u S, g
+// by 14 u S and |g| <= 1.8 S. n is within 4 u, the dot product within 3 u |g|: `along` is off by 27
+// u S; `across` by 14 + 27 + 7 and as much again for its own roundings, `price` by less than 256 u
+// (1 + mu) S. A negative price is above g.u/u.n for each u of the cone.
+bool DrivenFilter::IsFarFromDriven(int contact) const {
+  const IntegerEquilibrium::Contact& c = e_.contacts[static_cast<std::size_t>(contact)];
+  const IntegerCone& cone = e_.cones[static_cast<std::size_t>(c.cone)];
+  const double size = y_f_.lpNorm<Eigen::Infinity>() +
+                      2 * y_m_.lpNorm<Eigen::Infinity>() * c.r.lpNorm<Eigen::Infinity>();
+  const Eigen::Vector3d g = y_f_ + y_m_.cross(c.r);
+  const double along = g.dot(cone.n);
+  const double price = along + cone.mu * (g - along * cone.n).norm();
+  return price < -0x1p-45 * (1 + cone.mu) * size;
+}
+
 bool IsPolar(const IntegerEquilibrium& e, const Integer3& y_f, const Integer3& y_m) {
+  const DrivenFilter filter(e, y_f, y_m);
   for (std::size_t i = 0; i < e.contacts.size(); ++i) {
+    if (filter.IsFarFromDriven(static_cast<int>(i))) continue;
     const IntegerCone& cone = e.cones[static_cast<std::size_t>(e.contacts[i].cone)];
     if (!IsNeverDriven(cone, SeenAt(e, static_cast<int>(i), y_f, y_m))) return false;
   }

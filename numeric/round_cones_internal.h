@@ -11,6 +11,8 @@
 // The stored contacts of a question of static stability over the integers, for its exact stage.
 namespace cguide::numeric {
 
+struct RoundBuffers;  // round_simplex_internal.h
+
 /** A revolution cone: u with s = u.w >= 0 and s^2 (mu_den + mu_num) >= |u|^2 ww mu_den. */
 struct IntegerCone {
   Integer3 w;          ///< the normal, any length
@@ -24,7 +26,8 @@ struct IntegerCone {
 /** The contacts about the centre of mass. */
 struct IntegerEquilibrium {
   struct Contact {
-    Integer3 arm;  ///< times 2^unit: metres
+    Integer3 arm;       ///< times 2^unit: metres
+    Eigen::Vector3d r;  ///< arm in doubles, each entry within 2 u of its own
     int cone = -1;
   };
   std::vector<Contact> contacts;
@@ -49,6 +52,19 @@ bool IsNeverDriven(const IntegerCone& cone, const Integer3& g);
 /** y_f + y_m x arm, what the wrench y sees at a contact, with arms in units. */
 Integer3 SeenAt(const IntegerEquilibrium& e, int contact, const Integer3& y_f, const Integer3& y_m);
 
+/** What doubles can say of a wrench y and the cones: most contacts are far from being driven. */
+class DrivenFilter {
+ public:
+  DrivenFilter(const IntegerEquilibrium& e, const Integer3& y_f, const Integer3& y_m);
+
+  /** True only where y is below 0 on all wrenches of the contact. */
+  bool IsFarFromDriven(int contact) const;
+
+ private:
+  const IntegerEquilibrium& e_;
+  Eigen::Vector3d y_f_, y_m_;  // times one power of two
+};
+
 /** Whether y is at most 0 on the wrenches of all contacts. */
 bool IsPolar(const IntegerEquilibrium& e, const Integer3& y_f, const Integer3& y_m);
 
@@ -70,6 +86,7 @@ std::optional<exact::StabilityResult> DecideByParallelForces(const IntegerEquili
 
 /** Decides from where the simplex on doubles ended, or gives up: round_simplex.cc. Rank 6 alone. */
 std::optional<exact::StabilityResult> DecideBySimplex(const IntegerEquilibrium& e,
-                                                      const SimplexEnd& found);
+                                                      const SimplexEnd& found,
+                                                      RoundBuffers* buffers);
 
 }  // namespace cguide::numeric

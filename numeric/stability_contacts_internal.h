@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -95,10 +96,13 @@ struct SimplexEnd {
 Proposal SolveStability(const ScaledContacts& contacts, int count, Balance* balance, Vector6d* y,
                         int* pivots, SimplexEnd* end = nullptr, Vector6d* deep = nullptr);
 
+struct RoundBuffers;  // round_simplex_internal.h
+
 struct StabilityWorkspace::Scratch {
   ScaledContacts contacts;
   Balance balance;
-  SimplexEnd end;  ///< of the last question
+  SimplexEnd end;                       ///< of the last question
+  std::shared_ptr<RoundBuffers> exact;  ///< of the exact stage, once it was asked
 };
 
 /** TryStability; where it is kFails and `deep` is asked for, that is a separating wrench with more

@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "cguide/exact/equilibrium.h"
-#include "cguide/numeric/round_cones_internal.h"
+#include "cguide/numeric/round_simplex_internal.h"
 #include "cguide/numeric/stability_contacts_internal.h"
 
 namespace cguide::numeric {
@@ -63,9 +64,9 @@ Generator ToGenerator(const ScaledContacts& scaled, int contact, const Eigen::Ve
 bool ToBalance(const ScaledContacts& scaled, const std::vector<exact::ContactForce>& forces,
                Balance* balance) {
   std::vector<std::pair<Generator, double>> columns;
+  columns.reserve(forces.size());
   for (const exact::ContactForce& force : forces) {
-    const Eigen::Vector3d f(NearestDouble(force.f[0]), NearestDouble(force.f[1]),
-                            NearestDouble(force.f[2]));
+    const Eigen::Vector3d f(force.f[0].get_d(), force.f[1].get_d(), force.f[2].get_d());
     const double along = f.dot(scaled.normal(force.contact));
     if (!(along > 0)) continue;
     columns.emplace_back(ToGenerator(scaled, force.contact, f / along), along / scaled.v_scale);
@@ -98,13 +99,27 @@ bool ToBalance(const ScaledContacts& scaled, const std::vector<exact::ContactFor
   return true;
 }
 
-// y in the metres of the query, scaled to a largest entry near 1, which is exact up to rounding to
-// double.
+// y in the metres of the query, each entry rounded to double, times a power of two that brings the
+// largest near 1.
 Vector6d ToDoubles(const Vector6q& y) {
-  Rational largest = 0;
-  for (const Rational& x : y) largest = std::max(largest, Rational(abs(x)));
-  Vector6d rounded;
-  for (int i = 0; i < 6; ++i) rounded[i] = NearestDouble(Rational(y[i] / largest));
+  const auto bits = [](const mpz_class& x) {
+    return static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2));
+  };
+  long highest = std::numeric_limits<long>::min();
+  for (const Rational& x : y) {
+    if (x != 0) highest = std::max(highest, bits(x.get_num()) - bits(x.get_den()));
+  }
+  Vector6d rounded = Vector6d::Zero();
+  for (int i = 0; i < 6; ++i) {
+    if (y[i] == 0) continue;
+    Rational x;
+    if (highest >= 0) {
+      mpq_div_2exp(x.get_mpq_t(), y[i].get_mpq_t(), static_cast<mp_bitcnt_t>(highest));
+    } else {
+      mpq_mul_2exp(x.get_mpq_t(), y[i].get_mpq_t(), static_cast<mp_bitcnt_t>(-highest));
+    }
+    rounded[i] = NearestDouble(x);
+  }
   return rounded;
 }
 
@@ -150,7 +165,7 @@ std::optional<exact::StabilityResult> DecideFromFloats(const IntegerEquilibrium&
                    &end);
   }
   if (end.count != count) return std::nullopt;  // decided: only where fewer contacts are not
-  return DecideBySimplex(lifted, end);
+  return DecideBySimplex(lifted, end, workspace->scratch->exact.get());
 }
 
 // The exact verdict on the first `count` scaled contacts as they are stored. Over integers where
@@ -158,7 +173,8 @@ std::optional<exact::StabilityResult> DecideFromFloats(const IntegerEquilibrium&
 exact::StabilityResult DecideStored(const StabilityQuery& query, int count,
                                     StabilityWorkspace* workspace) {
   const ScaledContacts& scaled = workspace->scratch->contacts;
-  IntegerEquilibrium lifted;
+  if (!workspace->scratch->exact) workspace->scratch->exact = std::make_shared<RoundBuffers>();
+  IntegerEquilibrium& lifted = workspace->scratch->exact->lifted;
   if (LiftEquilibrium(query, scaled, count, &lifted)) {
     std::optional<exact::StabilityResult> result;
     const bool even = IsEven(lifted);

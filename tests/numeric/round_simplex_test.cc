@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "cguide/numeric/round_simplex_internal.h"
 #include "tests/numeric/stability_cases.h"
 #include "tests/numeric/stored_equilibrium.h"
 
@@ -20,7 +21,8 @@ std::optional<exact::StabilityResult> Decide(const StabilityQuery& query,
   REQUIRE(e);
   SimplexEnd& end = workspace->scratch->end;
   REQUIRE(end.count == static_cast<int>(query.contacts.size()));
-  auto result = DecideBySimplex(*e, end);
+  RoundBuffers buffers;
+  auto result = DecideBySimplex(*e, end, &buffers);
   if (result) CHECK(testing::IsProof(AsRationals(query), *result));
   return result;
 }
@@ -120,7 +122,8 @@ TEST_CASE("Without a start there is no answer") {
   Stance stance = testing::Foot();
   const auto e = AsIntegers(stance.Query());
   REQUIRE(e);
-  CHECK_FALSE(DecideBySimplex(*e, SimplexEnd{}));
+  RoundBuffers buffers;
+  CHECK_FALSE(DecideBySimplex(*e, SimplexEnd{}, &buffers));
 }
 
 }  // namespace
