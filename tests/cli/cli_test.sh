@@ -105,6 +105,20 @@ section_main_job() {
   says '"verdict": "stable"'
   says '"com_margin_enclosure_m"'
   says '"com_margin_gradient"'
+  expect 0 stability "$a1" --acceleration 1,0,0
+  says "while the centre of mass accelerates by [1 0 0]"
+  says "forces can balance it"
+  says "largest acceleration along it"
+  expect 0 stability "$a1" --acceleration 20,0,0 --format json
+  says '"largest_enclosure_m_s2"'
+  says '"verdict": "unstable"'
+  expect 3 stability "$a1" --acceleration 0,0,0
+  says "has no direction"
+  expect 3 stability "$a1" --acceleration 0,0,-9.81
+  says "free fall"
+  expect 2 stability "$a1" --acceleration 1,2
+  expect 2 stability "$a1" --acceleration nan,0,0
+  expect 2 stability "$a1" --acceleration 1,0,0 --coms "$work/none.csv"
   expect 1 stability "$room" --posture sitting
   says "separating wrench"
   expect 0 view "$work/guide.json" -o "$work/page.html"

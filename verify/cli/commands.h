@@ -87,6 +87,7 @@ struct StabilityArguments {
   std::string guide;
   double at = -1;    ///< edge index + s along the guide
   std::string coms;  ///< CSV file of centres of mass to ask instead of the configuration's own
+  std::vector<double> acceleration;  ///< of the centre of mass (m/s^2, in W); empty or three
   std::string format = "text";
 };
 

@@ -212,6 +212,12 @@ CLI::App* AddStability(CLI::App& app, StabilityArguments* a) {
       ->check(Within(0, kLargest, "number from 0 on"));
   c->add_option("--coms", a->coms,
                 "Ask of each centre of mass x,y,z (m, in W) in a CSV file, over the same contacts");
+  c->add_option("--acceleration", a->acceleration,
+                "X,Y,Z (m/s^2, in W): ask too while the centre of mass accelerates so, and how far "
+                "along it can go")
+      ->delimiter(',')
+      ->expected(3)
+      ->check(Within(-1e6, 1e6, "number"));
   c->add_option("--format", a->format, "Form of the report")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();

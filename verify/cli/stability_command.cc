@@ -2,26 +2,23 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <sstream>
+#include <string>
+#include <vector>
 
 #include "cguide/exact/core/error.h"
-#include "cguide/numeric/force_distribution.h"
 #include "cguide/numeric/io/problem_reader.h"
 #include "cguide/numeric/margins.h"
 #include "cguide/numeric/membership.h"
-#include "cguide/numeric/proved_margins.h"
 #include "cguide/verify/cli/com_positions.h"
 #include "cguide/verify/cli/commands.h"
 #include "cguide/verify/cli/console.h"
+#include "cguide/verify/cli/stability_report.h"
 #include "cguide/verify/cli/subject.h"
 #include "cguide/verify/sample_ladder.h"
 
 namespace cguide::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using numeric::Problem;
 
 struct Question {
@@ -69,329 +66,91 @@ Question ReadQuestion(const StabilityArguments& arguments) {
   return {std::move(problem), std::move(q), "posture " + name};
 }
 
-struct Answer {
-  numeric::StabilityAnswer stability;
-  std::string reason;  ///< where undecided
-  numeric::StabilityRung rung = numeric::StabilityRung::kUndecided;
-  std::vector<numeric::Contact> contacts;
-  std::vector<numeric::WitnessForce> forces;  ///< a balance; indices into `contacts`
-  std::optional<int> rank;  ///< of the contacts' wrenches, where an exact stage ran
-  Eigen::Vector3d com_W = Eigen::Vector3d::Zero();
-
-  exact::Enclosure com_margin;
-  std::optional<numeric::ProvedMarginGradient> gradient;  ///< of com_margin; one box a contact
-  exact::Enclosure force_margin;
-  bool force_checked = false;  ///< else a float
-  int sides = 4;               ///< of the pyramids of the force margin
-  numeric::ProvedSupportRegion region;
-  std::optional<numeric::ForceDistribution> distribution;
-};
-
 constexpr numeric::MarginOptions kRegionOptions{1e-4, 40};  // a tenth of a millimetre is for people
+
+bool HaveNormals(const numeric::StabilityQuery& query) {
+  return std::none_of(query.contacts.begin(), query.contacts.end(),
+                      [](const numeric::Contact& contact) { return contact.n_W.isZero(0); });
+}
 
 /** Margins, region and forces, with proofs where there can be any: a contact without a normal
  allows none. */
-void AskMargins(const numeric::StabilityQuery& query, Answer* answer) {
+void AskMargins(const numeric::StabilityQuery& query, StabilityReport* report) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   numeric::StabilityWorkspace workspace;
-  answer->sides = query.generators;
-  answer->com_margin = {-kInfinity, kInfinity};
-  answer->region.gap = kInfinity;
+  report->sides = query.generators;
+  report->com_margin = {-kInfinity, kInfinity};
+  report->region.gap = kInfinity;
   const auto force_margin = numeric::ProveForceMargin(query);
-  answer->force_checked = force_margin.has_value();
+  report->force_checked = force_margin.has_value();
   const double force = force_margin ? 0 : numeric::ForceMargin(query);
-  answer->force_margin = force_margin.value_or(exact::Enclosure{force, force});
-  for (const numeric::Contact& contact : query.contacts) {
-    if (contact.n_W.isZero(0)) return;
-  }
-  answer->com_margin = numeric::ProveComMargin(query, {}, &workspace).com_m;
-  answer->gradient = numeric::ProveComMarginGradient(query, {}, &workspace);
-  answer->region = numeric::ProveSupportRegion(query, {kRegionOptions, {}}, &workspace);
-  answer->distribution = numeric::DistributeForces(query, &workspace);
+  report->force_margin = force_margin.value_or(exact::Enclosure{force, force});
+  if (!HaveNormals(query)) return;
+  report->com_margin = numeric::ProveComMargin(query, {}, &workspace).com_m;
+  report->gradient = numeric::ProveComMarginGradient(query, {}, &workspace);
+  report->region = numeric::ProveSupportRegion(query, {kRegionOptions, {}}, &workspace);
+  report->distribution = numeric::DistributeForces(query, &workspace);
 }
 
-Answer Ask(const Question& question) {
+/** The vector of --acceleration; refuses those that leave no question. */
+Eigen::Vector3d CheckedAcceleration(const std::vector<double>& values, const Model& model) {
+  const Eigen::Vector3d a_W(values[0], values[1], values[2]);
+  const auto refuse = [&](const std::string& why) {
+    throw Error(Error::Code::kBadInput, "--acceleration " + Short(a_W.x()) + "," + Short(a_W.y()) +
+                                            "," + Short(a_W.z()) + ": " + why);
+  };
+  if (a_W.isZero(0)) refuse("has no direction; leave the option out for a robot at rest");
+  if (a_W == model.gravity) refuse("is gravity; a robot in free fall needs no balance");
+  return a_W;
+}
+
+AccelerationReport AskAccelerated(const numeric::StabilityQuery& query,
+                                  const Eigen::Vector3d& a_W) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  numeric::StabilityWorkspace workspace;
+  AccelerationReport report;
+  report.a_W = a_W;
+  report.com_margin = report.largest = {-kInfinity, kInfinity};
+  report.region.gap = kInfinity;
+  numeric::StabilityQuery accelerated = query;
+  accelerated.gravity_W -= a_W;
+  report.stability = numeric::Stability(accelerated, &workspace);
+  if (!HaveNormals(query)) return report;
+  numeric::RegionOptions options;
+  options.acceleration_W = a_W;
+  report.com_margin = numeric::ProveComMargin(query, options, &workspace).com_m;
+  options.margins = kRegionOptions;
+  report.region = numeric::ProveSupportRegion(query, options, &workspace);
+  report.largest = numeric::ProveLargestAcceleration(query, a_W).largest;
+  return report;
+}
+
+StabilityReport Ask(const Question& question, const std::vector<double>& acceleration) {
   const numeric::World world(question.problem.model);
   const verify::PreparedTwins twins(world);
   verify::SampleLadder ladder(world, twins);
   ladder.Place(question.q);
-  Answer answer;
+  StabilityReport report;
   verify::StageCounts counts;
   numeric::LadderedStability settled = ladder.TestStability(&counts);
-  answer.stability = settled.answer;
-  answer.reason = settled.reason;
-  answer.rung = settled.rung;
-  answer.contacts = std::move(settled.contacts);
-  answer.forces = std::move(settled.forces);
-  if (settled.exact) answer.rank = settled.exact->rank;
-  answer.com_W = ladder.com_W();
-  AskMargins(ladder.Query(), &answer);
+  report.stability = settled.answer;
+  report.reason = settled.reason;
+  report.rung = settled.rung;
+  report.contacts = std::move(settled.contacts);
+  report.forces = std::move(settled.forces);
+  if (settled.exact) report.rank = settled.exact->rank;
+  report.com_W = ladder.com_W();
+  AskMargins(ladder.Query(), &report);
+  if (!acceleration.empty()) {
+    report.accelerated =
+        AskAccelerated(ladder.Query(), CheckedAcceleration(acceleration, question.problem.model));
+  }
   // The distribution is over the contacts in doubles; a later rung may have found others.
-  if (answer.contacts.size() != ladder.contacts().size()) {
-    answer.distribution.reset();
-    answer.gradient.reset();
+  if (report.contacts.size() != ladder.contacts().size()) {
+    report.distribution.reset();
+    report.gradient.reset();
   }
-  return answer;
-}
-
-const char* StageText(numeric::StabilityRung rung) {
-  switch (rung) {
-    case numeric::StabilityRung::kFast:
-      return " (decided in doubles with a bound)";
-    case numeric::StabilityRung::kStored:
-      return " (decided by the exact twin)";
-    case numeric::StabilityRung::kBits106:
-      return " (decided by the exact twin, kinematics of 106 bits)";
-    case numeric::StabilityRung::kBits256:
-      return " (decided by the exact twin, kinematics of 256 bits)";
-    case numeric::StabilityRung::kUndecided:
-      break;
-  }
-  return "";
-}
-
-const char* StageName(numeric::StabilityRung rung) {
-  switch (rung) {
-    case numeric::StabilityRung::kFast:
-      return "fast";
-    case numeric::StabilityRung::kStored:
-      return "exact";
-    case numeric::StabilityRung::kBits106:
-      return "exact_106_bits";
-    case numeric::StabilityRung::kBits256:
-      return "exact_256_bits";
-    case numeric::StabilityRung::kUndecided:
-      break;
-  }
-  return "none";
-}
-
-std::string VerdictText(const Answer& answer) {
-  const char* stage = StageText(answer.rung);
-  switch (answer.stability.verdict) {
-    case Verdict::kHolds:
-      return std::string("statically stable") + stage;
-    case Verdict::kFails:
-      return std::string("not statically stable") + stage;
-    case Verdict::kUndecided:
-      break;
-  }
-  return "undecided: " + answer.reason;
-}
-
-/** A proved tie: forces balance, and any small push may end that. */
-bool IsBoundary(const Answer& answer) {
-  return answer.stability.verdict == Verdict::kUndecided && !answer.forces.empty();
-}
-
-/** A separating wrench, or one that supports the cone at a boundary of rank 6. */
-bool HasWrench(const Answer& answer) { return !answer.stability.separator.y.isZero(0); }
-
-std::string Vector(const Eigen::Vector3d& v) {
-  return "[" + Short(v.x()) + " " + Short(v.y()) + " " + Short(v.z()) + "]";
-}
-
-/** The value in the unit with so many digits, rounded up or down. */
-std::string Rounded(double value, double unit, int digits, bool up) {
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  if (value == 0) return "0";
-  const double scaled = value / unit;
-  const double step = std::pow(10.0, std::floor(std::log10(std::abs(scaled))) + 1 - digits);
-  // Quotient and power may be off by an ulp or so: a hundredth of a step more.
-  const double steps = up ? std::ceil(scaled / step + 0.01) : std::floor(scaled / step - 0.01);
-  std::ostringstream out;
-  out.precision(digits);
-  out << steps * step;
-  return out.str();
-}
-
-std::string Enclosed(const exact::Enclosure& x, double unit) {
-  return "[" + Rounded(x.lo, unit, 8, false) + ", " + Rounded(x.hi, unit, 8, true) + "]";
-}
-
-/** The middle of a box in metres per metre, and how far it may be off. */
-std::string Enclosed(const exact::EnclosedVector& box) {
-  Eigen::Vector3d middle;
-  double off = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    // Shown to 1e-4; the rest counts as error.
-    const double x = std::round((box[k].lo + box[k].hi) * 5e3) * 1e-4 + 0.0;  // no -0
-    middle[static_cast<int>(k)] = x;
-    off = std::max({off, box[k].hi - x, x - box[k].lo});
-  }
-  return Vector(middle) + " within " + Rounded(off, 1, 2, true);
-}
-
-std::string ContactName(const Model& model, const numeric::Contact& contact) {
-  return "\"" + model.robot.bodies[contact.body].name + "\" on \"" +
-         model.objects[contact.object].name + "\"";
-}
-
-std::string ForceMarginText(const Answer& answer) {
-  if (!answer.force_checked) return Short(answer.force_margin.lo) + " (a float, not checked)";
-  return Enclosed(answer.force_margin, 1) + ", checked exactly for pyramids of " +
-         std::to_string(answer.sides) + " sides";
-}
-
-void PrintForces(const Answer& answer) {
-  if (answer.distribution) {
-    std::cout << "forces that balance it, checked exactly (N)\n";
-    for (std::size_t i = 0; i < answer.contacts.size(); ++i) {
-      // Shown to a tenth of a millinewton.
-      const Eigen::Vector3d f =
-          (answer.distribution->force_W[i] * 1e4).array().round() * 1e-4 + 0.0;  // no -0
-      if (f.isZero(0)) continue;
-      std::cout << "  " << Vector(f) << " at " << Vector(answer.contacts[i].force_point_W())
-                << '\n';
-    }
-    return;
-  }
-  std::cout << "forces that balance it (N)\n";
-  for (const numeric::WitnessForce& f : answer.forces) {
-    const auto at = static_cast<std::size_t>(f.contact);
-    std::cout << "  " << Vector(f.weight * f.u_W) << " at "
-              << Vector(answer.contacts[at].force_point_W()) << '\n';
-  }
-}
-
-/** How the com margin changes with each point that it depends on by more than is shown. */
-void PrintGradient(const Answer& answer) {
-  if (!answer.gradient) return;
-  std::cout << "gradient of the com margin, checked exactly (mm per mm)\n  "
-            << Enclosed(answer.gradient->com_W) << " as the centre of mass moves\n";
-  for (std::size_t i = 0; i < answer.contacts.size(); ++i) {
-    const exact::EnclosedVector& box = answer.gradient->contact_W[i];
-    const bool idle = std::all_of(box.begin(), box.end(), [](const exact::Enclosure& e) {
-      return e.lo > -1e-4 && e.hi < 1e-4;
-    });
-    if (idle) continue;
-    std::cout << "  " << Enclosed(box) << " as the contact at "
-              << Vector(answer.contacts[i].force_point_W()) << " moves\n";
-  }
-}
-
-void PrintRegion(const numeric::ProvedSupportRegion& region) {
-  const char* what = "support region of the centre of mass";
-  if (region.is_empty) std::cout << what << ": empty, checked exactly\n";
-  if (region.whole_plane) std::cout << what << ": the whole plane, checked exactly\n";
-  if (region.inner_W.empty()) return;
-  std::cout << what << ", complete "
-            << (std::isinf(region.gap) ? "on no side"
-                                       : "within " + Rounded(region.gap, 1e-3, 2, true) + " mm")
-            << ", checked exactly (m)\n";
-  for (const Eigen::Vector3d& p : region.inner_W) {
-    std::cout << "  " << Short(p.x()) << ' ' << Short(p.y()) << '\n';
-  }
-}
-
-void PrintText(const Question& question, const Answer& answer) {
-  const Model& model = question.problem.model;
-  std::cout << question.what << ": " << VerdictText(answer) << '\n'
-            << "  centre of mass " << Vector(answer.com_W) << " m\n"
-            << "  com margin   " << Enclosed(answer.com_margin, 1e-3) << " mm, checked exactly\n"
-            << "  force margin " << ForceMarginText(answer) << '\n'
-            << answer.contacts.size() << " contact points\n";
-  for (const numeric::Contact& contact : answer.contacts) {
-    std::cout << "  " << ContactName(model, contact) << " at " << Vector(contact.force_point_W())
-              << " m, normal " << Vector(contact.n_W) << ", gap "
-              << Millimetres(contact.distance - contact.radius) << ", mu "
-              << Short(contact.friction) << (contact.certain ? "" : ", perhaps not active") << '\n';
-  }
-  if (answer.stability.verdict == Verdict::kHolds || IsBoundary(answer)) PrintForces(answer);
-  if (answer.stability.verdict != Verdict::kHolds && HasWrench(answer)) {
-    std::cout << (IsBoundary(answer) ? "supporting" : "separating")
-              << " wrench about the centre of mass\n  [";
-    for (int i = 0; i < 6; ++i)
-      std::cout << (i ? " " : "") << Short(answer.stability.separator.y[i]);
-    std::cout << "]\n";
-  }
-  PrintGradient(answer);
-  PrintRegion(answer.region);
-}
-
-Json ToJson(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
-
-Json Number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
-
-/** The ends; infinite ones as null. */
-Json ToJson(const exact::Enclosure& x) { return Json::array({Number(x.lo), Number(x.hi)}); }
-
-Json ToJson(const exact::EnclosedVector& box) {
-  return Json::array({ToJson(box[0]), ToJson(box[1]), ToJson(box[2])});
-}
-
-/** Enclosures by component; null where nothing is proved. */
-Json GradientJson(const std::optional<numeric::ProvedMarginGradient>& gradient) {
-  if (!gradient) return nullptr;
-  Json json;
-  json["com"] = ToJson(gradient->com_W);
-  json["contacts"] = Json::array();
-  for (const exact::EnclosedVector& box : gradient->contact_W) {
-    json["contacts"].push_back(ToJson(box));
-  }
-  return json;
-}
-
-Json ForcesJson(const Answer& answer) {
-  Json forces = Json::array();
-  const auto add = [&forces](int contact, const Eigen::Vector3d& f) {
-    forces.push_back({{"contact", contact}, {"force_n", ToJson(f)}});
-  };
-  if (answer.distribution) {
-    for (std::size_t i = 0; i < answer.contacts.size(); ++i) {
-      const Eigen::Vector3d& f = answer.distribution->force_W[i];
-      if (!f.isZero(0)) add(static_cast<int>(i), f);
-    }
-  } else if (answer.stability.verdict != Verdict::kFails) {
-    for (const numeric::WitnessForce& f : answer.forces) add(f.contact, f.weight * f.u_W);
-  }
-  return forces;
-}
-
-void PrintJson(const Question& question, const Answer& answer) {
-  const Model& model = question.problem.model;
-  Json json;
-  json["schema"] = "cguide-stability/1";
-  json["configuration"] = question.what;
-  json["verdict"] = answer.stability.verdict == Verdict::kHolds   ? "stable"
-                    : answer.stability.verdict == Verdict::kFails ? "unstable"
-                                                                  : "undecided";
-  json["stage"] = StageName(answer.rung);
-  json["reason"] = answer.reason.empty() ? Json(nullptr) : Json(answer.reason);
-  json["rank"] = answer.rank ? Json(*answer.rank) : Json(nullptr);
-  json["com_m"] = ToJson(answer.com_W);
-  json["com_margin_m"] = Number(answer.com_margin.lo);
-  json["com_margin_enclosure_m"] = ToJson(answer.com_margin);
-  json["com_margin_gradient"] = GradientJson(answer.gradient);
-  json["force_margin"] = Number(answer.force_margin.lo);
-  json["force_margin_enclosure"] = nullptr;
-  if (answer.force_checked) json["force_margin_enclosure"] = ToJson(answer.force_margin);
-  json["contacts"] = Json::array();
-  for (const numeric::Contact& c : answer.contacts) {
-    Json contact;
-    contact["body"] = model.robot.bodies[c.body].name;
-    contact["object"] = model.objects[c.object].name;
-    contact["point_m"] = ToJson(c.force_point_W());
-    contact["normal"] = ToJson(c.n_W);
-    contact["gap_m"] = c.distance - c.radius;
-    contact["friction"] = c.friction;
-    contact["certain"] = c.certain;
-    json["contacts"].push_back(contact);
-  }
-  json["forces"] = ForcesJson(answer);
-  json["separating_wrench"] = nullptr;
-  json["supporting_wrench"] = nullptr;
-  if (answer.stability.verdict != Verdict::kHolds && HasWrench(answer)) {
-    Json& wrench = json[IsBoundary(answer) ? "supporting_wrench" : "separating_wrench"];
-    wrench = Json::array();
-    for (double y : answer.stability.separator.y) wrench.push_back(y);
-  }
-  json["support_region_m"] = Json::array();
-  json["support_region_gap_m"] = Number(answer.region.gap);
-  for (const Eigen::Vector3d& p : answer.region.inner_W)
-    json["support_region_m"].push_back(ToJson(p));
-  // A file name may be any bytes.
-  std::cout << json.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
+  return report;
 }
 
 }  // namespace
@@ -401,6 +160,10 @@ int RunStability(const StabilityArguments& arguments) {
     std::cerr << "cguide stability: name a problem file or --guide\n";
     return kExitUsage;
   }
+  if (!arguments.coms.empty() && !arguments.acceleration.empty()) {
+    std::cerr << "cguide stability: --acceleration and --coms ask different questions; name one\n";
+    return kExitUsage;
+  }
   const Question question = ReadQuestion(arguments);
   if (!arguments.coms.empty()) {
     const ComReport report = AskComs(question.problem, question.q, ReadComs(arguments.coms));
@@ -408,9 +171,11 @@ int RunStability(const StabilityArguments& arguments) {
                                : PrintText(question.what, report);
     return ExitCodeOf(report);
   }
-  const Answer answer = Ask(question);
-  arguments.format == "json" ? PrintJson(question, answer) : PrintText(question, answer);
-  switch (answer.stability.verdict) {
+  const StabilityReport report = Ask(question, arguments.acceleration);
+  const Model& model = question.problem.model;
+  arguments.format == "json" ? PrintJson(question.what, model, report)
+                             : PrintText(question.what, model, report);
+  switch (report.stability.verdict) {
     case Verdict::kHolds:
       return kExitOk;
     case Verdict::kFails:
