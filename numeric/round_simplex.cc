@@ -12,6 +12,8 @@
 // Two things make up for that: columns have 92 bits where doubles had 53, so that with the
 // direction known to u the tangent is known to u^2; and a y0 that is driven by next to nothing is
 // shifted by a multiple of a y that has room, if that leaves y.v > 0.
+//
+// Most ties need none of that: round_corner.cc asks the columns of doubles alone first.
 namespace cguide::numeric {
 namespace {
 
