@@ -39,8 +39,10 @@ Rational AtLeastZero(const Rational& x) { return x < 0 ? Rational(0) : x; }
 /** Gathers pair answers into the answer of a union: the least distance, the weakest verdict. */
 class Gathering {
  public:
-  explicit Gathering(const Rational& threshold) : threshold_(threshold) {}
+  Gathering(const Rational& threshold, const SeparateOptions& options)
+      : threshold_(threshold), options_(options) {}
   const Rational& threshold() const { return threshold_; }
+  const SeparateOptions& options() const { return options_; }
 
   /** Whether sets with bounds this far apart can be left out: they hold, and are not nearest. A gap
    of 0 proves nothing. */
@@ -85,21 +87,29 @@ class Gathering {
   }
 
   Rational threshold_;
+  const SeparateOptions& options_;
   Separation result_;
   Verdict worst_ = Verdict::kHolds;
   int count_ = 0;
   double skip_ = std::numeric_limits<double>::infinity();
 };
 
+ConvexDistance Distance(const Core& a, const Core& b, const SeparateOptions& options) {
+  if (options.finder) {
+    ConvexDistance found = options.finder(a.points, b.points);
+    if (CheckConvexDistance(a.points, b.points, found)) return found;
+  }
+  return SquaredConvexDistance(a.points, b.points);
+}
+
 /** Two convex sets. Support functions move by at most the errors e with the points, so the true
  signed distance of the shapes is at least sd(outer) - r - e and at most sd(inner) - r + e. */
-Separation SeparateConvex(const ConvexBracket& a, const ConvexBracket& b,
-                          const Rational& threshold) {
+Separation SeparateConvex(const ConvexBracket& a, const ConvexBracket& b, const Rational& threshold,
+                          const SeparateOptions& options) {
   const Rational r = a.radius + b.radius, e = a.error + b.error;
-  const ConvexDistance inner = SquaredConvexDistance(a.inner.points, b.inner.points);
+  const ConvexDistance inner = Distance(a.inner, b.inner, options);
   const bool same = a.is_exact && b.is_exact;
-  const Rational outer =
-      same ? inner.squared : SquaredConvexDistance(a.outer().points, b.outer().points).squared;
+  const Rational outer = same ? inner.squared : Distance(a.outer(), b.outer(), options).squared;
   Separation result;
   result.a = inner.a;
   result.b = inner.b;
@@ -170,7 +180,7 @@ void AddMesh(const ConvexBracket& a, const ExactMesh& mesh, int part_a, int part
     if (gathering->Skips(a.bounds, mesh.triangles.bounds[k])) break;
     ConvexBracket triangle;
     triangle.inner = TriangleCore(mesh.triangles.triangles[k]);
-    Separation part = SeparateConvex(a, triangle, gathering->threshold());
+    Separation part = SeparateConvex(a, triangle, gathering->threshold(), gathering->options());
     part.part_a = part_a;
     part.part_b = part_b;
     gathering->Add(part);
@@ -212,8 +222,8 @@ std::vector<ConvexBracket> PlaceBody(const PreparedModel& model, const RobotPlac
 }
 
 Separation Separate(std::span<const ConvexBracket> body, std::span<const ExactPiece> object,
-                    const Rational& threshold) {
-  Gathering gathering(threshold);
+                    const Rational& threshold, const SeparateOptions& options) {
+  Gathering gathering(threshold, options);
   for (std::size_t i = 0; i < body.size(); ++i) {
     for (std::size_t j = 0; j < object.size(); ++j) {
       const int part_a = static_cast<int>(i), part_b = static_cast<int>(j);
@@ -224,7 +234,7 @@ Separation Separate(std::span<const ConvexBracket> body, std::span<const ExactPi
       };
       std::visit(Overloaded{[&](const ConvexBracket& piece) {
                               if (gathering.Skips(body[i].bounds, piece.bounds)) return;
-                              add(SeparateConvex(body[i], piece, threshold));
+                              add(SeparateConvex(body[i], piece, threshold, options));
                             },
                             [&](const ExactHalfspace& piece) {
                               add(SeparateHalfspace(body[i], piece, threshold));
@@ -239,12 +249,12 @@ Separation Separate(std::span<const ConvexBracket> body, std::span<const ExactPi
 }
 
 Separation Separate(std::span<const ConvexBracket> body, std::span<const ConvexBracket> other,
-                    const Rational& threshold) {
-  Gathering gathering(threshold);
+                    const Rational& threshold, const SeparateOptions& options) {
+  Gathering gathering(threshold, options);
   for (std::size_t i = 0; i < body.size(); ++i) {
     for (std::size_t j = 0; j < other.size(); ++j) {
       if (gathering.Skips(body[i].bounds, other[j].bounds)) continue;
-      Separation part = SeparateConvex(body[i], other[j], threshold);
+      Separation part = SeparateConvex(body[i], other[j], threshold, options);
       part.part_a = static_cast<int>(i);
       part.part_b = static_cast<int>(j);
       gathering.Add(part);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <variant>
 #include <vector>
 
+#include "cguide/exact/convex_distance.h"
 #include "cguide/exact/core/model.h"
 #include "cguide/exact/kinematics.h"
 #include "cguide/exact/placed_shape.h"
@@ -59,16 +61,25 @@ struct Separation {
 std::vector<ConvexBracket> PlaceBody(const PreparedModel& model, const RobotPlacement& placement,
                                      int body);
 
+/** Finds closest points of two hulls by any means: an answer that CheckConvexDistance does not
+ accept is found anew. */
+using ClosestPointsFinder =
+    std::function<ConvexDistance(std::span<const Vector3q>, std::span<const Vector3q>)>;
+
+struct SeparateOptions {
+  ClosestPointsFinder finder;  ///< none: SquaredConvexDistance
+};
+
 /** Separation of a placed body from an object's pieces, every kind included.
  Exact ties (touching at a threshold) are decided where the placement has no error and no cylinder
  takes part. A body without shapes, or an object without pieces, holds at infinity, reported as
  lower = upper = -1. */
 Separation Separate(std::span<const ConvexBracket> body, std::span<const ExactPiece> object,
-                    const Rational& threshold);
+                    const Rational& threshold, const SeparateOptions& options = {});
 
 /** Separation of two placed bodies, likewise. */
 Separation Separate(std::span<const ConvexBracket> body, std::span<const ConvexBracket> other,
-                    const Rational& threshold);
+                    const Rational& threshold, const SeparateOptions& options = {});
 
 /** The questions of C_free about one placed robot: Separate on placed bodies. A ladder asks them
  with placements of 106 and then 256 bits. */

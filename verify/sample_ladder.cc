@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cguide/numeric/convex_distance.h"
 #include "cguide/numeric/margins.h"
 
 namespace cguide::verify {
@@ -28,7 +29,7 @@ SampleLadder::SampleLadder(const World& world, const PreparedTwins& twins)
 
 void SampleLadder::Place(const Configuration& q) {
   q_ = q;
-  for (auto& placement : placements_) placement.reset();
+  for (Placed& placed : placements_) placed = Placed{};
   numeric::Place(*world_, q, &workspace_.geometry);
 }
 
@@ -40,16 +41,29 @@ double SampleLadder::Skin(const Pair& pair) const {
   return listed ? rules.skin : 0;
 }
 
+const std::vector<exact::ConvexBracket>& SampleLadder::PlacedBody(std::size_t precision, int body) {
+  Placed& placed = placements_[precision];
+  if (!placed.links) {
+    placed.links = exact::PlaceRobot(world_->model().robot, q_, kBits[precision]);
+  }
+  const auto [place, is_new] = placed.bodies.try_emplace(body);
+  if (is_new) place->second = exact::PlaceBody(twins_->geometry, *placed.links, body);
+  return place->second;
+}
+
+// What exact::BodyObjectSeparation and exact::BodyBodySeparation decide. The hulls of meshes have
+// hundreds of points: they are placed once for all pairs, and their closest points come from floats
+// that integers confirm.
 Verdict SampleLadder::TestPairExactly(const Pair& pair, const Rational& threshold) {
+  const exact::SeparateOptions options{[](auto a, auto b) {
+    return numeric::ClosestPoints(a, b, numeric::SquaredConvexDistance(a, b));
+  }};
   for (std::size_t i = 0; i < std::size(kBits); ++i) {
-    if (!placements_[i]) {
-      placements_[i] = exact::PlaceRobot(world_->model().robot, q_, kBits[i]);
-    }
+    const auto& body = PlacedBody(i, pair.body);
     const exact::Separation separation =
-        pair.self ? exact::BodyBodySeparation(twins_->geometry, *placements_[i], pair.body,
-                                              pair.other, threshold)
-                  : exact::BodyObjectSeparation(twins_->geometry, *placements_[i], pair.body,
-                                                pair.other, threshold);
+        pair.self
+            ? exact::Separate(body, PlacedBody(i, pair.other), threshold, options)
+            : exact::Separate(body, twins_->geometry.objects.at(pair.other), threshold, options);
     if (separation.verdict != Verdict::kUndecided) return separation.verdict;
   }
   return Verdict::kUndecided;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -59,6 +60,7 @@ class SampleLadder {
  private:
   Verdict TestPair(const numeric::Pair& pair, double* depth, StageCounts* counts);
   Verdict TestPairExactly(const numeric::Pair& pair, const Rational& threshold);
+  const std::vector<exact::ConvexBracket>& PlacedBody(std::size_t precision, int body);
   double Skin(const numeric::Pair& pair) const;
 
   const numeric::World* world_;
@@ -66,7 +68,12 @@ class SampleLadder {
   std::vector<numeric::Pair> pairs_;
   numeric::GuideWorkspace workspace_;
   Configuration q_;
-  std::vector<std::optional<exact::RobotPlacement>> placements_;  // one per precision, lazily
+  /** The robot placed with one precision, as far as it was asked for. */
+  struct Placed {
+    std::optional<exact::RobotPlacement> links;
+    std::map<int, std::vector<exact::ConvexBracket>> bodies;
+  };
+  std::vector<Placed> placements_;
 };
 
 }  // namespace cguide::verify

@@ -252,4 +252,33 @@ TEST_CASE("Two bodies are separated like a body and an object") {
   CHECK(BodyBodySeparation(prepared, placement, 0, 1, Rational(17, 12)).verdict == Verdict::kFails);
 }
 
+TEST_CASE("Closest points from elsewhere change no answer, right or wrong") {
+  int asked = 0;
+  const SeparateOptions wrong{[&](auto a, auto b) {
+    ++asked;
+    ConvexDistance lie = SquaredConvexDistance(a, b);
+    lie.squared += 1;
+    lie.a[0] += 1;
+    return lie;
+  }};
+  const SeparateOptions right{[](auto a, auto b) { return SquaredConvexDistance(a, b); }};
+  for (const ConvexShape& shape : Shapes()) {
+    for (const PieceShape& piece : Pieces()) {
+      const Model model = OneLink(shape, {{Pose{}, piece}});
+      const PreparedModel prepared = PrepareModel(model);
+      for (const Rational& height : {Rational(2), Rational(2 + kHair), Rational(2 - kHair)}) {
+        const auto body = PlaceBody(prepared, At(Vector3q(0, 0, height)), 0);
+        const Separation plain = Separate(body, prepared.objects[0], 0);
+        for (const SeparateOptions& options : {wrong, right}) {
+          const Separation other = Separate(body, prepared.objects[0], 0, options);
+          CHECK(other.verdict == plain.verdict);
+          CHECK(other.lower == plain.lower);
+          CHECK(other.upper == plain.upper);
+        }
+      }
+    }
+  }
+  CHECK(asked > 50);
+}
+
 }  // namespace cguide::exact
