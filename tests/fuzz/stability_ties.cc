@@ -5,6 +5,7 @@
 //
 // The numbers of such a stance are few bits wide, or ("fine") as wide as doubles are on a plane
 // across an axis; the centre of mass and the pull are then within some units of rounding of a tie.
+// Each is also asked with the memory of those before it about the same stance.
 //
 // Bracketed stances: contacts on floors, slopes and walls, and two centres of mass at most 2^-30 m
 // apart of which one is proved stable and the other unstable; between them, where doubles decline,
@@ -12,7 +13,7 @@
 #include <optional>
 
 #include "cguide/exact/equilibrium.h"
-#include "cguide/numeric/stability.h"
+#include "cguide/numeric/stability_memory.h"
 #include "tests/cases/flat_stances.h"
 #include "tests/fuzz/near_ties.h"
 #include "tests/fuzz/twins.h"
@@ -84,12 +85,28 @@ std::string CheckExactStage(const numeric::StabilityQuery& query, Verdict truth,
   return agrees ? "" : "the exact twin answers differently";
 }
 
+/** What the ties before it have taught proves no more about this one than is true. */
+std::string CheckMemory(const numeric::StabilityQuery& query, Verdict truth,
+                        numeric::StabilityMemory* memory, numeric::StabilityWorkspace* workspace) {
+  const long before = memory->answered();
+  const numeric::StabilityAnswer answer = TryStability(query, memory, workspace);
+  if (answer.verdict == Verdict::kUndecided) return "";
+  if (answer.verdict != truth) return "a verdict with memory is not the truth about a flat stance";
+  if (memory->answered() == before) return "";
+  return numeric::testing::IsProved(query, answer)
+             ? ""
+             : "a verdict from memory is not proved by its witness";
+}
+
 // Rounding may have undone a step, which leaves a tie; that the tie is near follows from the
 // making.
 std::string CheckFlat(const FlatStance& stance, const FlatTie& tie, long every,
-                      numeric::StabilityWorkspace* workspace, Tally* tally) {
+                      numeric::StabilityMemory* memory, numeric::StabilityWorkspace* workspace,
+                      Tally* tally) {
   const numeric::StabilityQuery query = QueryOf(stance, tie);
   const Verdict truth = TruthAbout(stance, tie);
+  const std::string remembered = CheckMemory(query, truth, memory, workspace);
+  if (!remembered.empty()) return remembered;
   const numeric::StabilityAnswer fast = TryStability(query, workspace);
   if (fast.verdict == Verdict::kUndecided) {
     return CheckExactStage(query, truth, every, workspace, tally);
@@ -173,10 +190,11 @@ std::string TiesOfStability(TieRng& rng, long every, Tally* tally) {
   if (kind == 1) return TiesOfStabilityCertificates(rng, tally);
   const bool fine = kind == 2;
   const FlatStance stance = fine ? testing::RandomFineStance(rng) : testing::RandomFlatStance(rng);
+  numeric::StabilityMemory memory;
   for (int k = 0; k < 16; ++k) {
     const FlatTie tie =
         fine ? testing::MakeFineTie(rng, stance) : testing::MakeFlatTie(rng, stance);
-    const std::string wrong = CheckFlat(stance, tie, every, &workspace, tally);
+    const std::string wrong = CheckFlat(stance, tie, every, &memory, &workspace, tally);
     if (!wrong.empty()) return wrong;
   }
   return "";
