@@ -13,8 +13,8 @@ namespace cguide::benchmark_tools {
 namespace {
 
 using Eigen::Vector3d;
-using numeric::Normal;
 using numeric::Contact;
+using numeric::Normal;
 using numeric::Rng;
 using numeric::StabilityMemory;
 using numeric::StabilityWorkspace;

@@ -12,7 +12,7 @@
 #include "cguide/numeric/cone_membership.h"
 #include "cguide/numeric/convex_distance.h"
 #include "cguide/numeric/demand_limit.h"
-#include "cguide/numeric/stability.h"
+#include "cguide/numeric/stability_memory.h"
 
 namespace cguide::testing {
 namespace {
@@ -126,6 +126,53 @@ TEST_CASE("Every gold pair of hulls has its expected distance") {
     if (std::isfinite(bound.hi)) REQUIRE(Lift(bound.hi) * Lift(bound.hi) >= gold.squared);
   }
   CHECK(filtered > 25);
+}
+
+namespace {
+
+/** The stance in doubles with exact unit normals; nothing where doubles do not hold it. */
+std::optional<std::vector<numeric::Contact>> AsContacts(const GoldStance& gold) {
+  std::vector<numeric::Contact> contacts;
+  for (const exact::ExactContact& c : gold.query.contacts) {
+    const auto p = AsDoubles(c.p), w = AsDoubles(c.cone.w);
+    if (!p || !w || exact::SquaredNorm(c.cone.w) != 1) return std::nullopt;
+    numeric::Contact& contact = contacts.emplace_back();
+    contact.x_W = *p;
+    contact.n_W = *w;
+    contact.normal_error = 0;
+    contact.friction = NearestDouble(c.cone.mu);
+    if (Lift(contact.friction) != c.cone.mu) return std::nullopt;
+  }
+  return contacts;
+}
+
+}  // namespace
+
+TEST_CASE("Every gold stance that doubles hold gets its verdict from the fast predicates") {
+  int asked = 0, exact = 0;
+  for (const GoldStance& gold : ReadGoldStances(kFolder + "stances.txt")) {
+    const auto contacts = AsContacts(gold);
+    const auto com = AsDoubles(gold.query.com);
+    if (!contacts || !com) continue;
+    CAPTURE(gold.name);
+    numeric::StabilityQuery query;
+    query.contacts = *contacts;
+    query.com_W = *com;
+    query.mass = 56;
+    numeric::StabilityWorkspace workspace;
+    numeric::StabilityMemory memory;
+    const numeric::SettledStability settled = numeric::Stability(query, &workspace);
+    REQUIRE(settled.answer.verdict == gold.expect);
+    ++asked;
+    exact += settled.stage == numeric::StabilityStage::kExact;
+    for (const Verdict fast :
+         {TryStability(query, &workspace).verdict, TryStability(query, &memory, &workspace).verdict,
+          TryStability(query, &memory, &workspace).verdict}) {
+      if (fast != Verdict::kUndecided) REQUIRE(fast == gold.expect);
+    }
+  }
+  CHECK(asked > 18);
+  CHECK(exact > 0);
 }
 
 TEST_CASE("Every gold stance gets its expected verdict, and its proof") {
