@@ -29,7 +29,7 @@ TEST_CASE("Bounds hold their points and margin, and are next to them") {
   for (int round = 0; round < 100; ++round) {
     std::vector<Vector3q> points;
     for (int i = 0; i < 4; ++i) points.push_back(RandomVector(rng, 1000, 777));
-    const Rational margin(static_cast<int>(rng() % 3), 7);
+    const Rational margin = Rational(static_cast<int>(rng() % 3)) / 7;
     const BoundingBox box = BoundsOf(points, margin);
     for (int k = 0; k < 3; ++k) {
       Rational low = points[0][k], high = low;

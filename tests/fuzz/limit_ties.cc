@@ -38,11 +38,11 @@ Line AimedLine(TieRng& rng, const testing::FlatStance& stance) {
     line.d = exact::Scaled(Below(rng, 7) - 3, edge) + exact::Scaled(Below(rng, 7) - 3, other);
   }
   if (exact::IsZero(line.d)) line.d = other;
-  const Rational back(Below(rng, 33) - 16, 8);
+  const Rational back = Lift(GridValue(rng, 16, 8));
   line.from =
       corner(i) - exact::Scaled(back, line.d) + exact::Scaled(Lift(step), along ? other : edge);
   // Height does not matter.
-  line.from += exact::Scaled(Rational(Below(rng, 9) - 4, 4), Lift(stance.w));
+  line.from += exact::Scaled(Lift(GridValue(rng, 4, 4)), Lift(stance.w));
   return line;
 }
 

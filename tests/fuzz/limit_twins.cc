@@ -20,7 +20,7 @@ exact::EquilibriumQuery Query(ByteStream& in) {
     contact.cone.w = Vector3q::Zero();
     contact.cone.w[in.Below(3)] = in.Below(4) == 0 ? -1 : 1;
     if (in.Below(4) == 0) contact.cone.w = GridVector(in);
-    contact.cone.mu = Rational(in.Below(5), 4);
+    contact.cone.mu = Lift(in.Below(5) / 4.0);
     if (i > 0 && in.Below(6) == 0) contact = query.contacts.front();
     query.contacts.push_back(std::move(contact));
   }

@@ -39,7 +39,7 @@ Operands Draw(Rng& rng) {
     const double a = AnyDouble(rng), b = rng() % 3 ? AnyDouble(rng) : a;
     o.lo[k] = std::min(a, b);
     o.hi[k] = std::max(a, b);
-    const Rational w(static_cast<long>(rng() % 5), 4);
+    const Rational w = Rational(static_cast<long>(rng() % 5)) / 4;
     o.member[k] = Lift(o.lo[k]) + w * (Lift(o.hi[k]) - Lift(o.lo[k]));
   }
   return o;

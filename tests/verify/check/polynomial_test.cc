@@ -45,7 +45,7 @@ TEST_CASE("Sums and products of parabolas hold those of their members, and so do
   for (int round = 0; round < 5000; ++round) {
     const Member a = Draw(rng), b = Draw(rng);
     for (int k = -8; k <= 8; ++k) {
-      const Rational t(k, 8), x = a.At(t), y = b.At(t);
+      const Rational t = Rational(k) / 8, x = a.At(t), y = b.At(t);
       REQUIRE(HoldsAt(a.set + b.set, t, x + y));
       REQUIRE(HoldsAt(a.set - b.set, t, x - y));
       REQUIRE(HoldsAt(a.set * b.set, t, x * y));
