@@ -65,6 +65,20 @@ class SiteQuery {
       near_.push_back(std::move(c));
       inside_.push_back(inside);
     }
+    if (IsSunk()) near_.clear();
+  }
+
+  /** Whether a solid holds the whole ball of that reach about the site: nothing in it is in front
+   of the obstacles. The ball is free of the solid's triangles, so that it has one winding number.
+ */
+  bool IsSunk() const {
+    for (std::size_t k = 0; k < sets_.solids.size(); ++k) {
+      const bool is_near = std::any_of(near_.begin(), near_.end(), [&](const Candidate& c) {
+        return c.set->solid == static_cast<int>(k);
+      });
+      if (!is_near && WindingNumber(sets_.solids[k], site_.x).value_or(0) != 0) return true;
+    }
+    return false;
   }
 
   int BandOf(const Candidate& c) const {

@@ -64,6 +64,25 @@ struct SiteQuery {
     }
   }
 
+  // Whether no solid holds the whole ball of that reach about the site, within which everything is
+  // inside it: where it has no triangle there, the ball has one winding number.
+  Verdict IsOutside(const std::vector<int>& near) const {
+    Verdict verdict = Verdict::kHolds;
+    for (const int index : near) {
+      const ObstaclePiece& piece = g.pieces[index];
+      if (piece.kind != PieceKind::kMesh || !piece.mesh->solid || piece.mesh->nodes.empty())
+        continue;
+      if (SquaredDistance(piece.mesh->nodes[0], site.x) > 0) continue;  // then it is outside
+      const auto& all = scratch->candidates;
+      const auto is_of_piece = [index](const SiteCandidate& c) { return c.piece == index; };
+      if (std::any_of(all.begin(), all.end(), is_of_piece)) continue;  // StaysOutsideSolids
+      const std::optional<int> winding = WindingNumber(*piece.mesh, site.x);
+      if (winding && *winding != 0) return Verdict::kFails;
+      if (!winding) verdict = Verdict::kUndecided;
+    }
+    return verdict;
+  }
+
   // 1 inside the band for certain, 0 outside for certain, -1 unknown.
   int InBand(const SiteCandidate& c, double error) const {
     const double upper = site.radius + rules.epsilon, lower = site.radius - Skin(c);
@@ -196,6 +215,10 @@ void FindSiteContacts(const World& world, int site, const PlacedSite& placed,
                       std::vector<Contact>* contacts) {
   const SiteQuery query{world, world.geometry(), placed, world.model().contact, scratch};
   query.Collect(near);
+  if (scratch->candidates.empty()) return;
+  const Verdict outside = query.IsOutside(near);
+  if (outside == Verdict::kFails) return;
+  const std::size_t before = contacts->size();
   if (query.rules.skin > 0) ApplySkin(query.g, placed, query.rules.seam, &scratch->candidates);
   const auto& all = scratch->candidates;
   const int n = static_cast<int>(all.size());
@@ -205,6 +228,8 @@ void FindSiteContacts(const World& world, int site, const PlacedSite& placed,
     query.Gather(i);
     query.Emit(site, contacts);
   }
+  if (outside == Verdict::kHolds) return;
+  for (std::size_t i = before; i < contacts->size(); ++i) (*contacts)[i].certain = false;
 }
 
 void FindContacts(const World& world, Workspace* workspace, std::vector<Contact>* contacts) {

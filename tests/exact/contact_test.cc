@@ -305,6 +305,22 @@ TEST_CASE("a solid's inside hides what a sheet would show") {
   CHECK(Find(PointModel({OneObject("block", mesh)}), At(Vector3d(0, 0, -0.03))).empty());
 }
 
+TEST_CASE(
+    "deep inside a solid, out of reach of its surface, there is no contact with what it hides") {
+  const Object block = OneObject("block", test::BoxMesh({-1, -1, -1}, {1, 1, 1}));
+  const Object hidden = OneObject("hidden", test::BoxMesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0}));
+  const Configuration inside = At(Vector3d(0.01, 0.02, 0.03));
+  CHECK(Find(PointModel({hidden}), inside).size() == 1);
+  CHECK(Find(PointModel({block, hidden}), inside).empty());
+  CHECK(Find(PointModel({hidden, block}), inside).empty());
+  // Its surface exactly at the end of the reach, 1/16.
+  const Object near = OneObject("near", test::BoxMesh({-1, -1, 0.75}, {1, 1, 0.875}));
+  CHECK(Find(PointModel({near}), At(Vector3d(0.01, 0.02, 0.9375 - 0x1p-20))).size() == 1);
+  CHECK(Find(PointModel({block, near}), At(Vector3d(0.01, 0.02, 0.9375 - 0x1p-20))).empty());
+  // A box of a model is no solid of triangles, and hides as well.
+  CHECK(Find(PointModel({OneObject("box", Box{{2, 2, 2}}), hidden}), inside).empty());
+}
+
 TEST_CASE("with a skin feet stand on the floor and a little in it, however it is cut") {
   for (const Floor& floor : Floors()) {
     for (const double z : {0.0, -0x1p-12, 0x1p-12}) {

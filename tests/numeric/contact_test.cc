@@ -1,4 +1,6 @@
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
 
 #include "cguide/numeric/geometry_internal.h"
 #include "tests/numeric/geometry_models.h"
@@ -182,6 +184,22 @@ TEST_CASE("a hairline crack below the seam adds and removes no contact") {
     for (int site = 0; site < 4; ++site) REQUIRE(count[site] >= 1);
     REQUIRE(b.contacts.size() == 4);
   }
+}
+
+TEST_CASE(
+    "deep inside a solid, out of reach of its surface, there is no contact with what it hides") {
+  std::mt19937_64 rng(31);
+  const auto uniform = [&] { return std::ldexp(static_cast<double>(rng() >> 11), -53); };
+  int hidden_alone = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d at(0.8 * uniform() - 0.4, 0.8 * uniform() - 0.4, 0.05 * uniform());
+    const Object block = OneObject("block", test::BoxMesh({-2, -2, -2}, {2, 2, 2}));
+    const Object hidden = OneObject("hidden", test::BoxMesh({-1, -1, -0.5}, {1, 1, 0}));
+    hidden_alone += !Look({hidden}, At(at)).contacts.empty();
+    CHECK(Look({block, hidden}, At(at)).contacts.empty());
+    CHECK(Look({hidden, block}, At(at)).contacts.empty());
+  }
+  CHECK(hidden_alone > 150);
 }
 
 TEST_CASE("a toe site near a riser keeps its tread contact") {
