@@ -60,8 +60,9 @@ void ProjectOnCylinder(const Convex& s, const Vector3d& x, PointProjection* p) {
       (side > 0 ? Vector3d(r * radial[0], r * radial[1], 0) : Vector3d(l[0], l[1], 0)) +
       Vector3d(0, 0, cap > 0 ? sign * h : l[2]);
   p->distance = (l - q).norm();
-  p->n = s.R * ((l - q) / p->distance);
   p->y = s.c + s.R * q;
+  // Off the mantle n is radial: l - q has lost what l has in common with q.
+  p->n = s.R * (cap > 0 ? Vector3d((l - q) / p->distance) : radial);
   p->n_reach = cap > 0 ? p->distance : rho;
   if (side <= 0) p->face_margin = -side;
 }

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "cguide/exact/linear_algebra.h"
 #include "cguide/numeric/convex_internal.h"
 #include "cguide/numeric/gjk_internal.h"
 #include "cguide/numeric/separation_internal.h"
@@ -91,6 +92,56 @@ TEST_CASE("projections lie on the set and no member is nearer") {
     }
   }
   CHECK(outside > 1000);
+}
+
+/** x - y for the closest point y of an axis-parallel set's core, up to a relative 2^-200. */
+Vector3q ExactNormal(const Convex& s, const Vector3d& x) {
+  const Vector3q l = Lift(x) - Lift(s.c);
+  Vector3q w;
+  for (int k = 0; k < 3; ++k) {
+    const Rational half = Lift(s.half[k]);
+    w[k] = l[k] > half ? Rational(l[k] - half) : l[k] < -half ? Rational(l[k] + half) : Rational(0);
+  }
+  if (s.kind != CoreKind::kCylinder) return w;
+  const Rational rho = exact::SqrtUp(Rational(l[0] * l[0] + l[1] * l[1]), 300);
+  const Rational out = rho - Lift(s.half[0]);
+  for (int k = 0; k < 2; ++k) w[k] = out > 0 ? Rational(l[k] * out / rho) : Rational(0);
+  return w;
+}
+
+TEST_CASE("the stated error of a normal holds as near to the set as one likes") {
+  std::mt19937_64 rng(21);
+  int near = 0, mantles = 0, stated = 0;
+  for (int i = 0; i < 4000; ++i) {
+    Owned owned = RandomConvex(rng, i % 4);
+    Convex& s = owned.s;
+    s.R.setIdentity();
+    const Vector3d n = RandomPoint(rng, 1).normalized();
+    const double gap = std::pow(10, Between(rng, -14, 0));
+    Vector3d x = s.c + CoreSupport(s, n) + gap * n;
+    // Beside the mantle and the faces, not only the corners that supports are.
+    if (i % 8 > 3) {
+      x[2] = s.c[2] + 0.9 * s.half[2] * Between(rng, -1, 1);
+      if (s.kind == CoreKind::kCylinder) {
+        x.head<2>() = s.c.head<2>() + (s.half[0] + gap) * n.head<2>().normalized();
+      }
+    }
+    const Vector3q w = ExactNormal(s, x);
+    const Rational squared = exact::SquaredNorm(w);
+    if (squared == 0) continue;
+    const PointProjection p = ProjectPoint(s, x);
+    const double bound = NormalBound(p, p.distance_error);
+    if (bound < 0) continue;
+    ++stated;
+    near += gap < 1e-6;
+    mantles += s.kind == CoreKind::kCylinder && w[2] == 0;
+    const Vector3q unit = exact::Scaled(1 / exact::SqrtUp(squared, 200), w);
+    CAPTURE(i, gap, bound);
+    REQUIRE(exact::SquaredNorm(Lift(p.n) - unit) <= Lift(bound) * Lift(bound));
+  }
+  CHECK(stated > 3000);
+  CHECK(near > 1000);
+  CHECK(mantles > 300);
 }
 
 TEST_CASE("what is said to be beyond a reach is, and of boxes it is said but for rounding") {
