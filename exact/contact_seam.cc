@@ -146,14 +146,29 @@ Verdict StaysFlat(const ConvexSet& set, const Candidate& c, const SeamRules& rul
   return sunk || held ? Verdict::kFails : Verdict::kUndecided;
 }
 
+// Where the seam or |x - y| is no more than the errors: all that is nearer to x lies within 2 |x -
+// y| of y, and where the surface is farther from y than that all of it has one winding number.
+// Inside, y is no closest point even if it is x.
+static Verdict StaysOutsideHere(const TriangleSet& solid, const Viewed& viewed) {
+  const std::optional<int> winding = WindingNumber(solid, viewed.y);
+  if (!winding) return Verdict::kUndecided;
+  const Rational d = SqrtUp(SquaredNorm(viewed.x - viewed.y)) + viewed.error_x + viewed.error_d;
+  const Rational clear = viewed.error_y + 2 * d;
+  const Rational squared = SquaredTriangleDistance(std::span(&viewed.y, 1), solid).squared;
+  if (squared <= clear * clear) return Verdict::kUndecided;
+  return *winding == 0 ? Verdict::kHolds : Verdict::kFails;
+}
+
 // z = y + s (x - y) lies within the seam of the true y where s d <= seam - error_y, and nearer to
 // the true x where (1 - s) d + error_x < d - error_d. The points of that kind are a connected cap,
 // so that, free of the surface, it has one winding number.
 Verdict StaysOutside(const TriangleSet& solid, const Viewed& viewed, const SeamRules& rules) {
   const Rational squared = SquaredNorm(viewed.x - viewed.y), room = rules.seam - viewed.error_y;
-  if (squared == 0 || room <= 0) return Verdict::kUndecided;
+  if (squared == 0 || room <= 0) return StaysOutsideHere(solid, viewed);
   const Rational s = std::min(Rational(1), Rational(room / SqrtUp(squared)));
-  if (s * SqrtDown(squared) <= viewed.error_x + viewed.error_d) return Verdict::kUndecided;
+  if (s * SqrtDown(squared) <= viewed.error_x + viewed.error_d) {
+    return StaysOutsideHere(solid, viewed);
+  }
   const std::optional<int> winding =
       WindingNumber(solid, viewed.y + Scaled(s, viewed.x - viewed.y));
   return winding == 0 ? Verdict::kHolds : Verdict::kFails;

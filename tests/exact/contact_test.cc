@@ -317,6 +317,11 @@ TEST_CASE(
   const Object near = OneObject("near", test::BoxMesh({-1, -1, 0.75}, {1, 1, 0.875}));
   CHECK(Find(PointModel({near}), At(Vector3d(0.01, 0.02, 0.9375 - 0x1p-20))).size() == 1);
   CHECK(Find(PointModel({block, near}), At(Vector3d(0.01, 0.02, 0.9375 - 0x1p-20))).empty());
+  // A site that touches what is hidden, known up to an error: no contact, whatever the truth is.
+  CHECK(FindBlurred(PointModel({block, hidden}), At(Vector3d(0.01, 0.02, 0)), Rational(1, 1 << 30))
+            .empty());
+  CHECK_FALSE(
+      FindBlurred(PointModel({hidden}), At(Vector3d(0.01, 0.02, 0)), Rational(1, 1 << 30)).empty());
   // A box of a model is no solid of triangles, and hides as well.
   CHECK(Find(PointModel({OneObject("box", Box{{2, 2, 2}}), hidden}), inside).empty());
 }
