@@ -53,7 +53,8 @@ Verdict StaysOutsideSolids(const Geometry& g, const std::vector<SiteCandidate>& 
 void ApplySkin(const Geometry& g, const PlacedSite& site, double seam,
                std::vector<SiteCandidate>* candidates);
 
-/** The contacts of one site, appended. None where it is deep inside a solid. `near` are the pieces within reach. */
+/** The contacts of one site, appended. None where it is deep inside a solid. `near` are the pieces
+ * within reach. */
 void FindSiteContacts(const World& world, int site, const PlacedSite& placed,
                       const std::vector<int>& near, Workspace::Scratch* scratch,
                       std::vector<Contact>* contacts);

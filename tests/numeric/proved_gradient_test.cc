@@ -107,8 +107,7 @@ TEST_CASE("Random stances: the float gradient and proved difference quotients ar
     const Eigen::Vector3d d = kStep * Eigen::Vector3d(Normal(rng), Normal(rng), Normal(rng));
     (i % 2 == 0 ? moved.com : moved.contacts[k].x_W) += d;
     const EnclosedVector& box = i % 2 == 0 ? gradient->com_W : gradient->contact_W[k];
-    const exact::Enclosure m =
-        ProveComMargin(moved.Query(), {{1e-12, 120}, {}}, &workspace).com_m;
+    const exact::Enclosure m = ProveComMargin(moved.Query(), {{1e-12, 120}, {}}, &workspace).com_m;
     double lo = 0, hi = 0;
     for (int a = 0; a < 3; ++a) {
       const exact::Enclosure& e = box[static_cast<std::size_t>(a)];
