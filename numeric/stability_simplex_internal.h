@@ -7,6 +7,11 @@
 
 namespace cguide::numeric {
 
+// They steer speed and the share of decided queries, never a verdict.
+constexpr double kPivotTolerance = 1e-11;  // smallest divisor in the ratio test
+constexpr int kMaxPivots = 120;
+constexpr double kBaseWeight[6] = {1, 0.8, 1.2, 0.9, 1.1, 0.7};
+
 struct WeightedGenerator {
   Generator generator;
   double weight = 0;  ///< of the scaled wrench
