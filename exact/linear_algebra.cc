@@ -50,13 +50,6 @@ Matrix3q Product(const Matrix3q& a, const Matrix3q& b) {
   return result;
 }
 
-bool IsZero(const VectorXq& a) {
-  for (const Rational& x : a) {
-    if (x != 0) return false;
-  }
-  return true;
-}
-
 std::array<Vector3q, 2> PlaneAxes(const Vector3q& up) {
   Require(!IsZero(up), "a plane needs a normal");
   int axis = 0;

@@ -15,7 +15,11 @@ template <typename A, typename B>
 Rational Dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   Require(a.size() == b.size(), "vectors of different sizes have no inner product");
   Rational sum = 0;
-  for (Eigen::Index i = 0; i < a.size(); ++i) sum += Rational(a(i)) * Rational(b(i));
+  for (Eigen::Index i = 0; i < a.size(); ++i) {
+    const auto& ai = a.derived().coeff(i);  // no copy where the vector is stored
+    const auto& bi = b.derived().coeff(i);
+    sum += ai * bi;
+  }
   return sum;
 }
 Vector3q Cross(const Vector3q& a, const Vector3q& b);
@@ -23,7 +27,13 @@ Rational SquaredNorm(const Vector3q& a);
 Vector3q Scaled(const Rational& s, const Vector3q& a);
 Vector3q Transformed(const Matrix3q& R, const Vector3q& a);
 Matrix3q Product(const Matrix3q& a, const Matrix3q& b);
-bool IsZero(const VectorXq& a);
+template <typename A>
+bool IsZero(const Eigen::MatrixBase<A>& a) {
+  for (Eigen::Index i = 0; i < a.size(); ++i) {
+    if (a.derived().coeff(i) != 0) return false;
+  }
+  return true;
+}
 
 /** Two vectors normal to `up` and to each other, 1 long up to rounding, that turn counter-clockwise
  about it. @throws Error where up is zero. */

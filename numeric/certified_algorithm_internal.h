@@ -263,9 +263,9 @@ Vector6d CertifiedRun<E>::Normal(int slot) {
   const double orientation = w_.rays.orientation[slot];
   if (const ShearedRay* const ray = StoredSheared(slot)) {
     Vector6d h;
-    if (w_.fixed_forces.AsDoubles(ray->normal, w_.points[ray->rows[0]], &h)) {
+    if (w_.fixed_forces.AsDoubles(ray->normal, w_.points[ray->rows.row[0]], &h)) {
       h /= Largest(h);  // its square may overflow
-      return (ray->is_odd ? -orientation : orientation) * h.normalized();
+      return (ray->rows.is_odd ? -orientation : orientation) * h.normalized();
     }
   }
   double fraction[6];

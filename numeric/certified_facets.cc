@@ -106,19 +106,13 @@ void FillForceOf(Impl* impl) {
 }
 
 void FillSamePoint(std::span<const AppliedForce> generators, Impl* impl) {
-  const int n = static_cast<int>(generators.size());
-  impl->same_point.resize(n);
   impl->points.clear();
   impl->forces.clear();
   for (const AppliedForce& g : generators) {
     impl->points.push_back(g.p);
     impl->forces.push_back(g.u);
   }
-  for (int begin = 0, end; begin < n; begin = end) {
-    end = begin + 1;
-    while (end < n && generators[end].p == generators[begin].p) ++end;
-    for (int i = begin; i < end; ++i) impl->same_point[i] = {begin, end};
-  }
+  FillGroups(generators, &impl->same_point);
   FillForceOf(impl);
 }
 

@@ -18,8 +18,7 @@ namespace cguide::numeric {
 /** The normal of a ray of whose rows two or more are at one point. */
 struct ShearedRay {
   ShearedNormal<Fixed> normal;
-  std::array<std::int32_t, 5> rows;  ///< the basis, those at the point first
-  bool is_odd = false;               ///< `rows` is an odd permutation of the basis
+  ShearedRows rows;  ///< the basis
 };
 
 /** What a run knows of its rays beside the graph. Five rows (generators, then unit vectors of

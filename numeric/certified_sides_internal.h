@@ -40,31 +40,17 @@ const std::array<Fixed, 6>& CertifiedRun<E>::StoredFixed(int slot) {
  point. */
 template <int E>
 bool CertifiedRun<E>::SetSheared(const Basis& basis, ShearedRay* ray) {
-  int begin[5], best = -1, most = 1;
-  for (int k = 0; k < 5; ++k) {
-    if (basis[k] >= n_) return false;
-    begin[k] = w_.same_point[basis[k]][0];
-    const int same = static_cast<int>(std::count(begin, begin + k + 1, begin[k]));
-    if (same > most) {
-      most = same;
-      best = begin[k];
-    }
+  for (const int row : basis) {
+    if (row >= n_) return false;
   }
-  if (best < 0) return false;
+  if (!Arrange(basis, w_.same_point, &ray->rows)) return false;
   FixedForces& all = w_.fixed_forces;
   if (all.empty()) all.Fill(w_.forces, w_.rows.row_exponent, w_.points, w_.same_point);
-  int front = 0, behind = most, passed = 0;  // each that goes first passes those that do not
-  for (int k = 0; k < 5; ++k) {
-    const bool first = begin[k] == best;
-    if (first) passed += behind - most;
-    ray->rows[first ? front++ : behind++] = basis[k];
-  }
-  ray->is_odd = passed % 2 != 0;
-  const auto& r = ray->rows;
+  const auto& r = ray->rows.row;
   const auto moment = [&](int k) { return &all.Moment(r[0], r[k]); };
   ray->normal.Set(
       {&all.force(r[0]), &all.force(r[1]), &all.force(r[2]), &all.force(r[3]), &all.force(r[4])},
-      {moment(2), moment(3), moment(4)}, most > 2);
+      {moment(2), moment(3), moment(4)}, ray->rows.at_point > 2);
   return true;
 }
 
@@ -83,7 +69,7 @@ const ShearedRay* CertifiedRun<E>::StoredSheared(int slot) {
 template <int E>
 int CertifiedRun<E>::ShearedSign(const ShearedRay& ray, int slot, int i) {
   FixedForces& all = w_.fixed_forces;
-  const Int128 value = ray.normal.Determinant(all.force(i), all.Moment(ray.rows[0], i)).v;
+  const Int128 value = ray.normal.Determinant(all.force(i), all.Moment(ray.rows.row[0], i)).v;
   int sign = value > kShearedError ? 1 : value < -kShearedError ? -1 : 0;
   if (sign == 0) {
     if (HoldsForceAbout(i, slot)) return 0;
@@ -92,7 +78,7 @@ int CertifiedRun<E>::ShearedSign(const ShearedRay& ray, int slot, int i) {
     ++counters_.sheared_signs;
     sign = words == 1 ? all.ExactSign<1>(ray.rows, i) : all.ExactSign<2>(ray.rows, i);
   }
-  return ray.is_odd ? -sign : sign;
+  return ray.rows.is_odd ? -sign : sign;
 }
 
 /** Whether the ray is in the planes of all forces at the point p of generator i because of its

@@ -97,24 +97,36 @@ bool FixedForces::AsDoubles(const ShearedNormal<Fixed>& normal, const Eigen::Vec
 }
 
 template <int N>
-int FixedForces::ExactSign(const std::array<std::int32_t, 5>& rows, int x) const {
-  const auto whole = [](const Triple<Fixed>& a, int zeros) {
-    return Triple<Wide<N>>{Shifted<N>(a[0].v >> zeros, 0), Shifted<N>(a[1].v >> zeros, 0),
-                           Shifted<N>(a[2].v >> zeros, 0)};
-  };
-  const auto force = [&](int i) { return whole(forces_[i], force_zeros_); };
-  const auto moment = [&](int i) {
-    return CrossOf(whole(Arm(rows[0], i), point_zeros_), force(i));
-  };
-  const Triple<Wide<N>> u[5] = {force(rows[0]), force(rows[1]), force(rows[2]), force(rows[3]),
-                                force(rows[4])};
-  const Triple<Wide<2 * N>> M[3] = {moment(rows[2]), moment(rows[3]), moment(rows[4])};
+ShearedNormal<Wide<N>> FixedForces::Exact(const ShearedRows& rows) const {
+  const auto& r = rows.row;
+  const Triple<Wide<N>> u[5] = {WholeForce<N>(r[0]), WholeForce<N>(r[1]), WholeForce<N>(r[2]),
+                                WholeForce<N>(r[3]), WholeForce<N>(r[4])};
+  const Triple<Wide<2 * N>> M[3] = {WholeMoment<N>(r[0], r[2]), WholeMoment<N>(r[0], r[3]),
+                                    WholeMoment<N>(r[0], r[4])};
   ShearedNormal<Wide<N>> normal;
-  normal.Set({&u[0], &u[1], &u[2], &u[3], &u[4]}, {&M[0], &M[1], &M[2]},
-             point_of_[rows[2]] == point_of_[rows[0]]);
-  return normal.Determinant(force(x), moment(x)).Sign();
+  normal.Set({&u[0], &u[1], &u[2], &u[3], &u[4]}, {&M[0], &M[1], &M[2]}, rows.at_point > 2);
+  return normal;
 }
-template int FixedForces::ExactSign<1>(const std::array<std::int32_t, 5>&, int) const;
-template int FixedForces::ExactSign<2>(const std::array<std::int32_t, 5>&, int) const;
+
+template <int N>
+int FixedForces::ExactSign(const ShearedRows& rows, int x) const {
+  return Exact<N>(rows).Determinant(WholeForce<N>(x), WholeMoment<N>(rows.row[0], x)).Sign();
+}
+template int FixedForces::ExactSign<1>(const ShearedRows&, int) const;
+template int FixedForces::ExactSign<2>(const ShearedRows&, int) const;
+
+template <int N>
+int FixedForces::ExactNormal(const ShearedRows& rows, int x, Wide<8 * N>* h) const {
+  const ShearedNormal<Wide<N>> normal = Exact<N>(rows);
+  const auto mp = CrossOf(normal.m, Whole<N>(points_[rows.row[0]], point_zeros_));
+  for (int k = 0; k < 3; ++k) {
+    h[k] = -(normal.alpha * normal.n[k]);
+    h[k] -= mp[k];
+    h[3 + k] = Extended<8 * N>(normal.m[k]);
+  }
+  return normal.Determinant(WholeForce<N>(x), WholeMoment<N>(rows.row[0], x)).Sign();
+}
+template int FixedForces::ExactNormal<1>(const ShearedRows&, int, Wide<8>*) const;
+template int FixedForces::ExactNormal<2>(const ShearedRows&, int, Wide<16>*) const;
 
 }  // namespace cguide::numeric

@@ -98,13 +98,59 @@ struct ShearedNormal {
  All factors are below 2^126 and all sums below 2^127. */
 constexpr int kShearedError = 15;
 
+/** Of each force the first and one past the last of those at its point that are listed side by side
+ with it. */
+inline void FillGroups(std::span<const AppliedForce> forces,
+                       std::vector<std::array<std::int32_t, 2>>* group) {
+  const auto n = static_cast<std::int32_t>(forces.size());
+  group->resize(forces.size());
+  const auto point = [&](std::int32_t i) { return forces[static_cast<std::size_t>(i)].p; };
+  for (std::int32_t begin = 0, end; begin < n; begin = end) {
+    end = begin + 1;
+    while (end < n && point(end) == point(begin)) ++end;
+    for (std::int32_t i = begin; i < end; ++i) (*group)[static_cast<std::size_t>(i)] = {begin, end};
+  }
+}
+
+/** Five forces, those at one point first. */
+struct ShearedRows {
+  std::array<std::int32_t, 5> row;
+  int at_point = 0;     ///< how many are at the first one's point: 2 at least
+  bool is_odd = false;  ///< the permutation
+};
+
+/** Of the points that two or more of the five share the one with most; false where there is none.
+ @param group as FillGroups fills it. */
+inline bool Arrange(const std::array<std::int32_t, 5>& basis,
+                    std::span<const std::array<std::int32_t, 2>> group, ShearedRows* rows) {
+  std::int32_t begin[5], best = -1;
+  rows->at_point = 1;
+  for (std::size_t k = 0; k < 5; ++k) {
+    begin[k] = group[static_cast<std::size_t>(basis[k])][0];
+    const int same = static_cast<int>(std::count(begin, begin + k + 1, begin[k]));
+    if (same > rows->at_point) {
+      rows->at_point = same;
+      best = begin[k];
+    }
+  }
+  if (best < 0) return false;
+  int front = 0, behind = rows->at_point, passed = 0;
+  for (std::size_t k = 0; k < 5; ++k) {
+    const bool first = begin[k] == best;
+    if (first) passed += behind - rows->at_point;  // it passes those that do not go first
+    rows->row[static_cast<std::size_t>(first ? front++ : behind++)] = basis[k];
+  }
+  rows->is_odd = passed % 2 != 0;
+  return true;
+}
+
 /** Forces and points in two scales of their own, rounded down; moments of forces about points. */
 class FixedForces {
  public:
   void Clear() { forces_.clear(); }
   bool empty() const { return forces_.empty(); }
-  /** Force i is scaled by 2^-exponent[i], which leaves it below one. Generators of one point stand
-   side by side, group[i] is the first of them. */
+  /** Force i is scaled by 2^-exponent[i], which leaves it below one. group as
+   FillGroups fills it. */
   void Fill(std::span<const Eigen::Vector3d> u, std::span<const int> exponent,
             std::span<const Eigen::Vector3d> p, std::span<const std::array<std::int32_t, 2>> group);
 
@@ -128,12 +174,36 @@ class FixedForces {
     const int zeros = std::min(force_zeros_, point_zeros_);
     return zeros >= 64 ? 1 : zeros >= 0 ? 2 : 0;
   }
+  /** Exactly, N is Words(): h with h.(u, 2^t q x u) > 0, t = MomentShift(), for forces u at q whose
+   determinant with the rows has the sign of `side`, which is that of force x. From m.M - alpha n.u,
+   M = (q - p) x u, with integers for 2^t q and 2^t p: h = (-alpha n - m x p, m). The first is below
+   96 b^8 + 288 b^8 < 2^(512 N - 16 + 9) in size. */
+  template <int N>
+  int ExactNormal(const ShearedRows& rows, int x, Wide<8 * N>* h) const;
+  int MomentShift() const { return point_shift_ - point_zeros_; }
+
   /** The sign of the exact determinant of rows 0 .. 4, of which 0 and 1 are at one point, and x; N
    is Words(). */
   template <int N>
-  int ExactSign(const std::array<std::int32_t, 5>& rows, int x) const;
+  int ExactSign(const ShearedRows& rows, int x) const;
 
  private:
+  template <int N>
+  Triple<Wide<N>> Whole(const Triple<Fixed>& a, int zeros) const {
+    return {Shifted<N>(a[0].v >> zeros, 0), Shifted<N>(a[1].v >> zeros, 0),
+            Shifted<N>(a[2].v >> zeros, 0)};
+  }
+  template <int N>
+  Triple<Wide<N>> WholeForce(int i) const {
+    return Whole<N>(forces_[i], force_zeros_);
+  }
+  template <int N>
+  Triple<Wide<2 * N>> WholeMoment(int about, int i) const {
+    return CrossOf(Whole<N>(Arm(about, i), point_zeros_), WholeForce<N>(i));
+  }
+  template <int N>
+  ShearedNormal<Wide<N>> Exact(const ShearedRows& rows) const;
+
   Triple<Fixed> Arm(int from, int to) const {
     Triple<Fixed> arm = points_[to];
     for (int k = 0; k < 3; ++k) arm[k] -= points_[from][k];

@@ -57,6 +57,15 @@ struct Wide {
   }
 };
 
+/** The same number in more words. */
+template <int M, int N>
+Wide<M> Extended(const Wide<N>& a) {
+  static_assert(M >= N);
+  Wide<M> result;
+  for (int i = 0; i < M; ++i) result.w[i] = i < N ? a.w[i] : a.IsNegative() ? ~mp_limb_t{0} : 0;
+  return result;
+}
+
 /** m 2^shift, shift >= 0; bits beyond N words are lost. */
 template <int N>
 Wide<N> Shifted(Int128 m, int shift) {

@@ -8,6 +8,7 @@
 #include "cguide/numeric/stability.h"
 #include "tests/benchmark/timing.h"
 #include "tests/cases/flat_stances.h"
+#include "tests/cases/stored_query.h"
 #include "tests/numeric/stability_cases.h"
 
 namespace cguide::benchmark_tools {
@@ -22,17 +23,6 @@ struct Times {
   long settled = 0, ties = 0, open = 0;
 };
 
-exact::EquilibriumQuery Lifted(const StabilityQuery& query) {
-  exact::EquilibriumQuery lifted;
-  for (const numeric::Contact& c : query.contacts) {
-    lifted.contacts.push_back({Lift(c.force_point_W()), {Lift(c.n_W), Lift(c.friction)}});
-  }
-  lifted.com = Lift(query.com_W);
-  lifted.mass = Lift(query.mass);
-  lifted.gravity = Lift(query.gravity_W);
-  return lifted;
-}
-
 /** Times one question if doubles leave it open; the twin on one in `share`. */
 void Ask(const StabilityQuery& query, std::size_t share, StabilityWorkspace* workspace,
          Times* times) {
@@ -46,7 +36,7 @@ void Ask(const StabilityQuery& query, std::size_t share, StabilityWorkspace* wor
      : result.reason == exact::StabilityReason::kLadder ? times->open
                                                         : times->ties);
   if (times->stage.size() % share != 0) return;
-  const exact::EquilibriumQuery lifted = Lifted(query);
+  const exact::EquilibriumQuery lifted = testing::LiftStored(query);
   times->twin.push_back(MicrosecondsOf(1, [&] { Keep(exact::DecideStability(lifted).verdict); }));
 }
 

@@ -15,6 +15,7 @@
 #include "cguide/exact/equilibrium.h"
 #include "cguide/numeric/stability_memory.h"
 #include "tests/cases/flat_stances.h"
+#include "tests/cases/stored_query.h"
 #include "tests/fuzz/near_ties.h"
 #include "tests/fuzz/twins.h"
 #include "tests/numeric/stability_cases.h"
@@ -26,18 +27,6 @@ namespace {
 using Eigen::Vector3d;
 using testing::FlatStance;
 using testing::FlatTie;
-
-/** The stored contacts, without error. */
-exact::EquilibriumQuery Lifted(const numeric::StabilityQuery& query) {
-  exact::EquilibriumQuery lifted;
-  for (const numeric::Contact& c : query.contacts) {
-    lifted.contacts.push_back({Lift(c.x_W), {Lift(c.n_W), Lift(c.friction)}});
-  }
-  lifted.com = Lift(query.com_W);
-  lifted.mass = Lift(query.mass);
-  lifted.gravity = Lift(query.gravity_W);
-  return lifted;
-}
 
 /** Whether the result's witness proves what it says of the stored numbers. */
 bool IsProof(const exact::EquilibriumQuery& query, const exact::StabilityResult& result) {
@@ -59,7 +48,7 @@ std::string CheckExactStage(const numeric::StabilityQuery& query, Verdict truth,
   const numeric::SettledStability settled = Stability(query, workspace);
   if (!settled.exact) return "an open question was not asked of the exact stage";
   const exact::StabilityResult& result = *settled.exact;
-  const exact::EquilibriumQuery lifted = Lifted(query);
+  const exact::EquilibriumQuery lifted = testing::LiftStored(query);
   if (!IsProof(lifted, result)) return "the exact stage's witness proves nothing";
   const Verdict verdict = settled.answer.verdict;
   if (verdict != Verdict::kUndecided && verdict != truth) {
@@ -123,7 +112,8 @@ std::string CheckMiddle(const numeric::StabilityQuery& query,
                         numeric::StabilityWorkspace* workspace, Tally* tally) {
   const numeric::SettledStability settled = Stability(query, workspace);
   if (!settled.exact) return "an open question was not asked of the exact stage";
-  if (!IsProof(Lifted(query), *settled.exact)) return "the exact stage's witness proves nothing";
+  if (!IsProof(testing::LiftStored(query), *settled.exact))
+    return "the exact stage's witness proves nothing";
   if (settled.exact->reason == exact::StabilityReason::kLadder) {
     ++tally->open;
     return "";

@@ -35,6 +35,7 @@ std::string CheckTriangles(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckClearance(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckContacts(ByteStream& in, bool thorough, Tally* tally);
 std::string CheckLimits(ByteStream& in, bool thorough, Tally* tally);
+std::string CheckMargins(ByteStream& in, bool thorough, Tally* tally);
 
 /** Whether the slow checks of a near tie are to be made: of one case in `every`, as the tally
  stands, or of all where `every` is 1. */
@@ -62,6 +63,7 @@ std::string TiesOfClearance(std::mt19937_64& rng, long every, Tally* tally);
 std::string TiesOfPlacedClearance(std::mt19937_64& rng, Tally* tally);
 std::string TiesOfContacts(std::mt19937_64& rng, long every, Tally* tally);
 std::string TiesOfLimits(std::mt19937_64& rng, long every, Tally* tally);
+std::string TiesOfMargins(std::mt19937_64& rng, long every, Tally* tally);
 
 struct Family {
   const char* name;
@@ -75,6 +77,7 @@ inline constexpr Family kFamilies[] = {{"cone", &CheckCone, &TiesOfCones},
                                        {"triangles", &CheckTriangles, &TiesOfTriangles},
                                        {"clearance", &CheckClearance, &TiesOfClearance},
                                        {"contacts", &CheckContacts, &TiesOfContacts},
-                                       {"limits", &CheckLimits, &TiesOfLimits}};
+                                       {"limits", &CheckLimits, &TiesOfLimits},
+                                       {"margins", &CheckMargins, &TiesOfMargins}};
 
 }  // namespace cguide::fuzz

@@ -123,6 +123,28 @@ int ExactSign(const Drawn& drawn, const std::array<std::int32_t, 5>& rows, int x
   return sgn(Determinant(u, p));
 }
 
+/** That the integer normal h of the rows has h.(u, 2^t p x u) of the sign `expected` for force x,
+ as it says, and 0 for the rows. */
+template <int N>
+void RequireNormal(const Drawn& drawn, const FixedForces& all, const ShearedRows& rows, int x,
+                   int expected) {
+  Wide<8 * N> wide[6];
+  REQUIRE(all.ExactNormal<N>(rows, x, wide) == expected);
+  Vector3q f, m;
+  for (int k = 0; k < 3; ++k) {
+    f[k] = ToInteger(wide[k]);
+    m[k] = ToInteger(wide[3 + k]);
+  }
+  const Rational scale = Lift(std::ldexp(1.0, all.MomentShift()));
+  const auto side = [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Vector3q u = Lift(drawn.u[k]), moment = exact::Cross(Lift(drawn.p[k]), u);
+    return sgn(Rational(exact::Dot(f, u) + scale * exact::Dot(m, moment)));
+  };
+  REQUIRE(side(x) == expected);
+  for (const int row : rows.row) REQUIRE(side(row) == 0);
+}
+
 }  // namespace
 
 TEST_CASE("signs in integers about a shared point are those of the exact wrenches, ties too") {
@@ -139,8 +161,11 @@ TEST_CASE("signs in integers about a shared point are those of the exact wrenche
     for (const auto& set : kSets) {
       const std::array<std::int32_t, 5> rows{set[0], set[1], set[2], set[3], set[4]};
       const int expected = ExactSign(drawn, rows, set[5]);
-      if (all.Words() == 1) REQUIRE(all.ExactSign<1>(rows, set[5]) == expected);
-      if (all.Words() >= 1) REQUIRE(all.ExactSign<2>(rows, set[5]) == expected);
+      const ShearedRows arranged{rows, rows[0] == 0 && rows[2] == 2 ? 3 : 2, false};
+      if (all.Words() == 1) REQUIRE(all.ExactSign<1>(arranged, set[5]) == expected);
+      if (all.Words() >= 1) REQUIRE(all.ExactSign<2>(arranged, set[5]) == expected);
+      if (all.Words() == 1) RequireNormal<1>(drawn, all, arranged, set[5], expected);
+      if (all.Words() >= 1) RequireNormal<2>(drawn, all, arranged, set[5], expected);
       zero += expected == 0;
       ShearedNormal<Fixed> normal;
       const auto moment = [&](int i) { return &all.Moment(rows[0], i); };
