@@ -32,6 +32,18 @@ FlatStance Thinned(TieRng& rng, FlatStance stance) {
   return stance;
 }
 
+/** Half of the pulls of flat ties are on the friction cone or beside it, where the exact twin has
+ to search: one in eight is enough. */
+FlatTie AnyTie(TieRng& rng, const FlatStance& stance, bool fine) {
+  const double cosine = 1 / std::hypot(1, stance.mu);
+  const bool any = Below(rng, 4) == 0;
+  for (;;) {
+    FlatTie tie = fine ? MakeFineTie(rng, stance) : MakeFlatTie(rng, stance);
+    const double along = -tie.gravity.dot(stance.w) / (tie.gravity.norm() * stance.w.norm());
+    if (any || along > cosine + 1e-6) return tie;
+  }
+}
+
 FlatStance AnyStance(TieRng& rng, bool fine) {
   return fine ? testing::RandomFineStance(rng) : testing::RandomFlatStance(rng);
 }
@@ -142,8 +154,7 @@ std::string TiesOfMargins(TieRng& rng, long every, Tally* tally) {
   std::string wrong;
   for (int k = 0; k < 8 && wrong.empty(); ++k) {
     const FlatStance& asked = k == 0 ? thin : stance;
-    const FlatTie tie = fine ? MakeFineTie(rng, asked) : MakeFlatTie(rng, asked);
-    wrong = CheckRegionTie(rng, asked, tie, every, &workspace, tally);
+    wrong = CheckRegionTie(rng, asked, AnyTie(rng, asked, fine), every, &workspace, tally);
   }
   for (int k = 0; k < 2 && wrong.empty() && !fine; ++k) {
     wrong = CheckKink(stance, KinkTie(rng, stance), &workspace, tally);
