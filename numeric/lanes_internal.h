@@ -42,11 +42,13 @@ namespace cguide::numeric {
 struct Wide8 {
   using Part = double __attribute__((vector_size(64)));
   using Bits = std::uint64_t __attribute__((vector_size(64)));
+  using Stored = double __attribute__((vector_size(64), aligned(8), may_alias));
   Part part[1];
 };
 struct Pair8 {
   using Part = double __attribute__((vector_size(32)));
   using Bits = std::uint64_t __attribute__((vector_size(32)));
+  using Stored = double __attribute__((vector_size(32), aligned(8), may_alias));
   Part part[2];
 };
 
@@ -58,46 +60,52 @@ concept Lanes8 = sizeof(V) == 64 && requires {
   typename V::Part;
 };
 
+// Parts are named one by one, not in a loop: g++ keeps what a loop indexes in memory, and copies it
+// there in pieces of 16 bytes, for which a load of 32 has to wait.
+
 template <Lanes8 V>
 CGUIDE_INLINE V Lanes(double x) {
   V v;
-  for (auto& part : v.part) {
-    if constexpr (kParts<V> == 1) {
-      part = typename V::Part{x, x, x, x, x, x, x, x};
-    } else {
-      part = typename V::Part{x, x, x, x};
-    }
+  if constexpr (kParts<V> == 1) {
+    v.part[0] = typename V::Part{x, x, x, x, x, x, x, x};
+  } else {
+    v.part[0] = v.part[1] = typename V::Part{x, x, x, x};
   }
   return v;
 }
 template <Lanes8 V>
 CGUIDE_INLINE V operator+(const V& x, const V& y) {
   V z;
-  for (int i = 0; i < kParts<V>; ++i) z.part[i] = x.part[i] + y.part[i];
+  z.part[0] = x.part[0] + y.part[0];
+  if constexpr (kParts<V> == 2) z.part[1] = x.part[1] + y.part[1];
   return z;
 }
 template <Lanes8 V>
 CGUIDE_INLINE V operator-(const V& x, const V& y) {
   V z;
-  for (int i = 0; i < kParts<V>; ++i) z.part[i] = x.part[i] - y.part[i];
+  z.part[0] = x.part[0] - y.part[0];
+  if constexpr (kParts<V> == 2) z.part[1] = x.part[1] - y.part[1];
   return z;
 }
 template <Lanes8 V>
 CGUIDE_INLINE V operator*(const V& x, const V& y) {
   V z;
-  for (int i = 0; i < kParts<V>; ++i) z.part[i] = x.part[i] * y.part[i];
+  z.part[0] = x.part[0] * y.part[0];
+  if constexpr (kParts<V> == 2) z.part[1] = x.part[1] * y.part[1];
   return z;
 }
 template <Lanes8 V>
 CGUIDE_INLINE V operator/(const V& x, const V& y) {
   V z;
-  for (int i = 0; i < kParts<V>; ++i) z.part[i] = x.part[i] / y.part[i];
+  z.part[0] = x.part[0] / y.part[0];
+  if constexpr (kParts<V> == 2) z.part[1] = x.part[1] / y.part[1];
   return z;
 }
 template <Lanes8 V>
 CGUIDE_INLINE V operator*(double x, const V& y) {
   V z;
-  for (int i = 0; i < kParts<V>; ++i) z.part[i] = x * y.part[i];
+  z.part[0] = x * y.part[0];
+  if constexpr (kParts<V> == 2) z.part[1] = x * y.part[1];
   return z;
 }
 template <Lanes8 V>
@@ -111,7 +119,8 @@ CGUIDE_INLINE V operator+(const V& y, double x) {
 template <Lanes8 V>
 CGUIDE_INLINE V operator-(const V& x) {
   V z;
-  for (int i = 0; i < kParts<V>; ++i) z.part[i] = -x.part[i];
+  z.part[0] = -x.part[0];
+  if constexpr (kParts<V> == 2) z.part[1] = -x.part[1];
   return z;
 }
 template <Lanes8 V>
@@ -127,7 +136,8 @@ CGUIDE_INLINE V& operator-=(V& x, const V& y) {
 template <Lanes8 V>
 CGUIDE_INLINE V IfGreater(const V& x, const V& y, const V& p, const V& q) {
   V z;
-  for (int i = 0; i < kParts<V>; ++i) z.part[i] = x.part[i] > y.part[i] ? p.part[i] : q.part[i];
+  z.part[0] = x.part[0] > y.part[0] ? p.part[0] : q.part[0];
+  if constexpr (kParts<V> == 2) z.part[1] = x.part[1] > y.part[1] ? p.part[1] : q.part[1];
   return z;
 }
 template <Lanes8 V>
@@ -139,9 +149,9 @@ template <Lanes8 V>
 CGUIDE_INLINE V Absolute(const V& x) {
   constexpr std::uint64_t kMagnitude = UINT64_MAX >> 1;
   V z;
-  for (int i = 0; i < kParts<V>; ++i) {
-    z.part[i] =
-        (typename V::Part)((typename V::Bits)x.part[i] & kMagnitude);  // NOLINT: lanes' bits
+  z.part[0] = (typename V::Part)((typename V::Bits)x.part[0] & kMagnitude);  // NOLINT: lanes' bits
+  if constexpr (kParts<V> == 2) {
+    z.part[1] = (typename V::Part)((typename V::Bits)x.part[1] & kMagnitude);  // NOLINT
   }
   return z;
 }
@@ -149,12 +159,14 @@ CGUIDE_INLINE V Absolute(const V& x) {
 template <Lanes8 V>
 CGUIDE_INLINE V Load(const double* p) {
   V v;
-  __builtin_memcpy(&v, p, sizeof(V));
+  v.part[0] = *reinterpret_cast<const typename V::Stored*>(p);
+  if constexpr (kParts<V> == 2) v.part[1] = *reinterpret_cast<const typename V::Stored*>(p + 4);
   return v;
 }
 template <Lanes8 V>
 CGUIDE_INLINE void Store(const V& v, double* p) {
-  __builtin_memcpy(p, &v, sizeof(V));
+  *reinterpret_cast<typename V::Stored*>(p) = v.part[0];
+  if constexpr (kParts<V> == 2) *reinterpret_cast<typename V::Stored*>(p + 4) = v.part[1];
 }
 
 using Quad = double __attribute__((vector_size(32)));
@@ -214,15 +226,20 @@ struct Labels {
 };
 template <Lanes8 V>
 CGUIDE_INLINE Labels<V> LaneNumbers() {
-  constexpr std::uint64_t kNumbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};
   Labels<V> labels;
-  __builtin_memcpy(&labels, kNumbers, sizeof(labels));
+  if constexpr (kParts<V> == 1) {
+    labels.part[0] = typename V::Bits{0, 1, 2, 3, 4, 5, 6, 7};
+  } else {
+    labels.part[0] = typename V::Bits{0, 1, 2, 3};
+    labels.part[1] = typename V::Bits{4, 5, 6, 7};
+  }
   return labels;
 }
 template <Lanes8 V>
 CGUIDE_INLINE Labels<V> operator+(const Labels<V>& labels, std::uint64_t n) {
   Labels<V> sum;
-  for (int i = 0; i < kParts<V>; ++i) sum.part[i] = labels.part[i] + n;
+  sum.part[0] = labels.part[0] + n;
+  if constexpr (kParts<V> == 2) sum.part[1] = labels.part[1] + n;
   return sum;
 }
 
@@ -231,9 +248,11 @@ CGUIDE_INLINE Labels<V> operator+(const Labels<V>& labels, std::uint64_t n) {
 template <Lanes8 V>
 CGUIDE_INLINE V Labelled(const V& v, const Labels<V>& labels, std::uint64_t mask) {
   V z;
-  for (int i = 0; i < kParts<V>; ++i) {
-    z.part[i] = (typename V::Part)(((typename V::Bits)v.part[i] & ~mask) |  // NOLINT: lanes' bits
-                                   labels.part[i]);
+  z.part[0] = (typename V::Part)(((typename V::Bits)v.part[0] & ~mask) |  // NOLINT: lanes' bits
+                                 labels.part[0]);
+  if constexpr (kParts<V> == 2) {
+    z.part[1] = (typename V::Part)(((typename V::Bits)v.part[1] & ~mask) |  // NOLINT
+                                   labels.part[1]);
   }
   return z;
 }

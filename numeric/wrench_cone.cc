@@ -53,10 +53,12 @@ struct Pass {
 /** 2^(1022 - exponent field): a normal double for ordinary numbers. */
 template <typename V>
 CGUIDE_INLINE V ScaleOf(const V& x) {
+  using Bits = typename V::Bits;
+  using Part = typename V::Part;
   V scale;
-  for (int i = 0; i < kParts<V>; ++i) {
-    const auto bits = (typename V::Bits)x.part[i];                    // NOLINT: lanes' bits
-    scale.part[i] = (typename V::Part)((2045 - (bits >> 52)) << 52);  // NOLINT
+  scale.part[0] = (Part)((2045 - ((Bits)x.part[0] >> 52)) << 52);  // NOLINT: lanes' bits
+  if constexpr (kParts<V> == 2) {
+    scale.part[1] = (Part)((2045 - ((Bits)x.part[1] >> 52)) << 52);  // NOLINT
   }
   return scale;
 }
