@@ -149,8 +149,8 @@ class FixedForces {
  public:
   void Clear() { forces_.clear(); }
   bool empty() const { return forces_.empty(); }
-  /** Force i is scaled by 2^-exponent[i], which leaves it below one. group as
-   FillGroups fills it. */
+  /** Force i is scaled by 2^-exponent[i], which leaves it below one. `group`
+   as FillGroups fills it. */
   void Fill(std::span<const Eigen::Vector3d> u, std::span<const int> exponent,
             std::span<const Eigen::Vector3d> p, std::span<const std::array<std::int32_t, 2>> group);
 
@@ -174,10 +174,10 @@ class FixedForces {
     const int zeros = std::min(force_zeros_, point_zeros_);
     return zeros >= 64 ? 1 : zeros >= 0 ? 2 : 0;
   }
-  /** Exactly, N is Words(): h with h.(u, 2^t q x u) > 0, t = MomentShift(), for forces u at q whose
-   determinant with the rows has the sign of `side`, which is that of force x. From m.M - alpha n.u,
-   M = (q - p) x u, with integers for 2^t q and 2^t p: h = (-alpha n - m x p, m). The first is below
-   96 b^8 + 288 b^8 < 2^(512 N - 16 + 9) in size. */
+  /** The exact normal h of the rows, N is Words(): h.(u, 2^t q x u), t = MomentShift(), has the
+   sign of the determinant of the rows and the force u at q. From m.M - alpha n.u, M = (q - p) x u,
+   with integers for 2^t q and 2^t p: h = (-alpha n - m x p, m). The first is below 96 b^8 + 288 b^8
+   < 2^(512 N - 16 + 9) in size. @return that sign for force x. */
   template <int N>
   int ExactNormal(const ShearedRows& rows, int x, Wide<8 * N>* h) const;
   int MomentShift() const { return point_shift_ - point_zeros_; }

@@ -71,7 +71,7 @@ std::vector<Rational> FlatAcceleration::Ends() const {
 std::string FlatAcceleration::Judge(const numeric::ProvedAcceleration& claim) const {
   const Rational squared = SquaredNorm(d_);
   const bool is_supplied = claim.inner.status != exact::ProgramStatus::kInfeasible;
-  if (!is_supplied && !std::isinf(claim.largest.lo)) return "a bound that nothing supplies";
+  if (!is_supplied && claim.largest.lo != -HUGE_VAL) return "a bound that nothing supplies";
   if (is_supplied && !IsForceCarried(ForceOf(claim.family, claim.inner.z[0]))) {
     return "an acceleration is supplied that cannot be carried";
   }

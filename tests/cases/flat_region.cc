@@ -114,7 +114,7 @@ std::optional<FlatRegion> RegionOf(const FlatStance& stance, const FlatTie& tie)
 }
 
 std::string JudgeComMargin(const std::optional<FlatRegion>& region, const exact::Enclosure& com_m) {
-  if (!region) return std::isinf(com_m.lo) ? "" : "a margin without a region";
+  if (!region) return com_m.lo == -HUGE_VAL ? "" : "a margin without a region";
   const Binding binding = BindingSides(*region);
   const RootMultiple truth{binding.is_inside ? 1 : -1, binding.squared};
   return Encloses(com_m, truth) ? "" : "com_m is not in its enclosure";

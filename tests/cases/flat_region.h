@@ -45,7 +45,7 @@ std::string JudgeRegion(const std::optional<FlatRegion>& region, const exact::Co
  mass along the side's inward normal n changes com_m by 1, moving its ends a and b, where the disc
  touches at a + t (b - a), by -(1 - t) n and -t n; so do forces (1 - t) f and t f at a and b, which
  are among those that balance there. Outside, n points to the nearest point of the region.
- @param contact_of_corner index among the boxes. */
+ @param contact boxes of the stance's contacts, of which the first are at the corners. */
 std::string JudgeGradient(const FlatRegion& region, const exact::EnclosedVector& com,
                           const std::vector<exact::EnclosedVector>& contact);
 

@@ -61,6 +61,7 @@ TEST_CASE("A com margin is judged by its distance from the nearest side, or from
   CHECK_FALSE(RegionOf(Square(), steep).has_value());
   CHECK(JudgeComMargin(std::nullopt, {-HUGE_VAL, 1}).empty());
   CHECK_FALSE(JudgeComMargin(std::nullopt, {-1, 1}).empty());
+  CHECK_FALSE(JudgeComMargin(std::nullopt, {HUGE_VAL, HUGE_VAL}).empty());
 }
 
 TEST_CASE("Corners beyond the region, lines through it and gaps too small are refused") {
@@ -123,6 +124,8 @@ TEST_CASE("Accelerations are carried as far as the hull and the friction cone le
   claim.inner.z[0] += Lift(0x1p-40);
   CHECK_FALSE(truth.Judge(claim).empty());
   claim.inner.status = exact::ProgramStatus::kInfeasible;
+  CHECK_FALSE(truth.Judge(claim).empty());
+  claim.largest = {HUGE_VAL, HUGE_VAL};
   CHECK_FALSE(truth.Judge(claim).empty());
 }
 

@@ -4,8 +4,8 @@
 // beside it, and the pull on the friction cone or beside it, where the region becomes empty. For
 // the gradient, which is not stated where com_m may be 0: the centre of mass is as far from two
 // sides that are at right angles, or where the nearest point of the region passes from a side to a
-// corner. Accelerations: their limit by friction is that by the hull, or one is where the robot
-// stands.
+// corner. Accelerations: their limit by friction is that by the hull, or the robot stands at the
+// edge of balance already.
 #include <cmath>
 
 #include "cguide/exact/com_region_search.h"
@@ -48,7 +48,8 @@ FlatStance AnyStance(TieRng& rng, bool fine) {
   return fine ? testing::RandomFineStance(rng) : testing::RandomFlatStance(rng);
 }
 
-/** Evidence that floats proposed has corners by weights on a basis, or no corner. */
+/** Evidence that floats proposed has corners by weights on a basis; what has none counts as the
+ exact twin's. */
 void CountStage(const exact::ComRegionEvidence& evidence, Tally* tally) {
   const bool floats = !evidence.corners.empty() && !evidence.corners.front().base_weight.empty();
   ++(floats ? tally->fast : tally->exact);
